@@ -1,0 +1,1 @@
+//! Jobs: work for a scheme, and the serial oracle each result is held against.

@@ -1,0 +1,1 @@
+//! Runs one cell of a sweep and turns it into rows.

@@ -1,0 +1,1 @@
+//! Rows, their columns, the log they are written to.

@@ -1,0 +1,1 @@
+//! Made from machine words only: locks, rings, counters, barriers, quiescence.

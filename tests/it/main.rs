@@ -1,0 +1,1 @@
+//! One binary for all integration tests: oracles, goldens in virtual time, invariants, command line, house rules.

@@ -1,0 +1,210 @@
+//! Caches, coherence and the bus of a simulated multiprocessor.
+//!
+//! Each line is in one of the states of a MOESI protocol, kept as (owner, dirty, sharers):
+//! modified/exclusive = an owner who is the only sharer; owned = a dirty owner among sharers;
+//! shared = sharers without a dirty owner. A transaction waits for the bus and for the line, occupies
+//! the bus for a while, and holds the line until its requester has it, so that contended lines are
+//! handed on one requester at a time.
+
+use super::model::Model;
+
+const NOBODY: u16 = u16::MAX;
+
+/// What an access does to a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Access {
+    Read,
+    Write,
+}
+
+/// How an access was served, with the time at which it is complete.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Served {
+    pub(super) done: u64,
+    pub(super) hit: bool,
+}
+
+#[derive(Clone, Copy)]
+struct Line {
+    owner: u16,
+    dirty: bool,
+    /// Whether somebody sleeps until this line is written.
+    watched: bool,
+    busy_until: u64,
+    /// Number of the last write to the line, 0 for none.
+    written: u64,
+}
+
+const FRESH: Line = Line { owner: NOBODY, dirty: false, watched: false, busy_until: 0, written: 0 };
+
+/// The state of all lines and caches.
+pub(super) struct Coherence {
+    lines: Vec<Line>,
+    /// `words` bits words a line: who has a copy.
+    sharers: Vec<u64>,
+    words: usize,
+    l1: Vec<Vec<u32>>,
+    /// Empty as long as all of memory fits into the second-level cache: then nothing is ever evicted.
+    l2: Vec<Vec<u32>>,
+    bus_free: u64,
+    writes: u64,
+    /// Transactions on the bus so far.
+    pub(super) transactions: u64,
+}
+
+impl Coherence {
+    pub(super) fn new() -> Self {
+        Coherence {
+            lines: Vec::new(),
+            sharers: Vec::new(),
+            words: 1,
+            l1: Vec::new(),
+            l2: Vec::new(),
+            bus_free: 0,
+            writes: 0,
+            transactions: 0,
+        }
+    }
+
+    /// Makes room for `lines` lines and `processors` processors. What is cached stays cached.
+    pub(super) fn grow(&mut self, model: &Model, lines: usize, processors: usize) {
+        let words = processors.div_ceil(64);
+        if words > self.words {
+            let old = std::mem::take(&mut self.sharers);
+            self.sharers = vec![0; self.lines.len() * words];
+            for (new, old) in self.sharers.chunks_mut(words).zip(old.chunks(self.words)) {
+                new[..old.len()].copy_from_slice(old);
+            }
+            self.words = words;
+        }
+        if lines > self.lines.len() {
+            self.lines.resize(lines, FRESH);
+            self.sharers.resize(lines * self.words, 0);
+        }
+        while self.l1.len() < processors {
+            self.l1.push(vec![u32::MAX; model.l1_lines]);
+        }
+        if self.lines.len() > model.l2_lines {
+            while self.l2.len() < self.l1.len() {
+                self.l2.push(vec![u32::MAX; model.l2_lines]);
+            }
+        }
+    }
+
+    #[inline]
+    fn shares(&self, line: u32, p: u16) -> bool {
+        self.sharers[line as usize * self.words + usize::from(p) / 64] >> (p % 64) & 1 == 1
+    }
+
+    #[inline]
+    fn row(&mut self, line: u32) -> &mut [u64] {
+        let at = line as usize * self.words;
+        &mut self.sharers[at..at + self.words]
+    }
+
+    fn sole_sharer(&self, line: u32, p: u16) -> bool {
+        let at = line as usize * self.words;
+        let row = &self.sharers[at..at + self.words];
+        row.iter().enumerate().all(|(w, &bits)| {
+            bits == if w == usize::from(p) / 64 { 1 << (p % 64) } else { 0 }
+        })
+    }
+
+    /// Serves an access of processor `p` to `line` that starts at `now`.
+    #[inline]
+    pub(super) fn access(&mut self, model: &Model, p: u16, line: u32, access: Access, now: u64) -> Served {
+        if access == Access::Write {
+            self.writes += 1;
+            self.lines[line as usize].written = self.writes;
+        }
+        let have = self.shares(line, p);
+        let state = self.lines[line as usize];
+        if have && (access == Access::Read || (state.owner == p && self.sole_sharer(line, p))) {
+            self.lines[line as usize].dirty |= access == Access::Write;
+            let time = if self.fill_l1(model, p, line) { model.l1_hit } else { model.l2_hit };
+            return Served { done: now + time, hit: true };
+        }
+        // The request takes its turn on the bus when it is made; a line in transit is waited for after.
+        let start = now.max(self.bus_free);
+        self.bus_free = start + model.bus_occupancy;
+        self.transactions += 1;
+        let owned_elsewhere = state.dirty && state.owner != p && state.owner != NOBODY;
+        let latency = match (have, owned_elsewhere) {
+            (true, _) => model.upgrade,
+            (false, true) => model.cache_to_cache,
+            (false, false) => model.memory,
+        };
+        let done = start.max(state.busy_until) + latency;
+        let alone = self.row(line).iter().all(|&bits| bits == 0);
+        let entry = &mut self.lines[line as usize];
+        entry.busy_until = done;
+        match access {
+            Access::Write => {
+                entry.owner = p;
+                entry.dirty = true;
+                self.row(line).fill(0);
+            }
+            Access::Read if alone => {
+                entry.owner = p;
+                entry.dirty = false;
+            }
+            // A dirty owner stays the one who serves the line; a clean exclusive one becomes a sharer.
+            Access::Read if !entry.dirty => entry.owner = NOBODY,
+            Access::Read => {}
+        }
+        self.row(line)[usize::from(p) / 64] |= 1 << (p % 64);
+        if !have {
+            self.fill_l2(model, p, line);
+        }
+        self.fill_l1(model, p, line);
+        Served { done, hit: false }
+    }
+
+    /// Puts the line into the first-level cache; says whether it was there.
+    #[inline]
+    fn fill_l1(&mut self, model: &Model, p: u16, line: u32) -> bool {
+        let tag = &mut self.l1[usize::from(p)][line as usize & (model.l1_lines - 1)];
+        std::mem::replace(tag, line) == line
+    }
+
+    /// Puts the line into the second-level cache, throwing out what sat there.
+    fn fill_l2(&mut self, model: &Model, p: u16, line: u32) {
+        let Some(tags) = self.l2.get_mut(usize::from(p)) else { return };
+        let out = std::mem::replace(&mut tags[line as usize & (model.l2_lines - 1)], line);
+        if out == u32::MAX || out == line {
+            return;
+        }
+        self.row(out)[usize::from(p) / 64] &= !(1 << (p % 64));
+        let entry = &mut self.lines[out as usize];
+        if entry.owner == p {
+            entry.owner = NOBODY;
+            if std::mem::take(&mut entry.dirty) {
+                // A write-back takes its turn on the bus; nobody waits for it.
+                self.bus_free += model.bus_occupancy;
+            }
+        }
+    }
+
+    /// The number of the newest write so far.
+    pub(super) fn newest_write(&self) -> u64 {
+        self.writes
+    }
+
+    /// Whether `line` was written after write number `since`.
+    pub(super) fn written_since(&self, line: u32, since: u64) -> bool {
+        self.lines[line as usize].written > since
+    }
+
+    pub(super) fn watch(&mut self, line: u32) {
+        self.lines[line as usize].watched = true;
+    }
+
+    /// Whether somebody watched the line; they no longer do.
+    #[inline]
+    pub(super) fn take_watch(&mut self, line: u32) -> bool {
+        std::mem::take(&mut self.lines[line as usize].watched)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,230 @@
+//! The constants of a simulated multiprocessor, and the presets shipped as data.
+
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// A bus-based cache-coherent multiprocessor. Times are cycles of its own clock.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Model {
+    /// The machine's name.
+    pub name: String,
+    /// What it is, in a line.
+    pub description: String,
+    /// Where the constants come from.
+    pub source: String,
+    /// Processors of the real machine. More may be simulated.
+    pub processors: usize,
+    /// Clock rate, MHz.
+    pub clock_mhz: f64,
+    /// Bytes of a coherence line: a power of two, 16 to 128.
+    pub line_bytes: usize,
+    /// Lines of the first-level cache (direct mapped).
+    pub l1_lines: usize,
+    /// Cycles of a first-level hit.
+    pub l1_hit: u64,
+    /// Lines of the second-level cache (direct mapped).
+    pub l2_lines: usize,
+    /// Cycles of a second-level hit.
+    pub l2_hit: u64,
+    /// Cycles of a miss that memory serves.
+    pub memory: u64,
+    /// Cycles of a miss that another processor's cache serves.
+    pub cache_to_cache: u64,
+    /// Cycles to invalidate the other copies of a line one holds.
+    pub upgrade: u64,
+    /// Cycles for which one transaction occupies the bus.
+    pub bus_occupancy: u64,
+    /// Extra cycles of an atomic read-modify-write.
+    pub atomic: u64,
+    /// Cycles of a full fence.
+    pub fence: u64,
+    /// Depth of the store buffer (in order, as on a total-store-order machine).
+    pub store_buffer: usize,
+    /// Cycles between two looks of a busy wait.
+    pub poll_pause: u64,
+    /// How much slower this machine is than the host on which node costs were measured, in cycles
+    /// of this machine for a nanosecond measured there. See `job::cull::costs`.
+    pub cycles_per_measured_ns: f64,
+}
+
+/// Why a machine description cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum ModelError {
+    /// The file cannot be read.
+    #[error("{file}: cannot read the machine description: {source}")]
+    Read {
+        /// The file.
+        file: String,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+    /// The file is not a machine description.
+    #[error("{file}: {message}")]
+    Parse {
+        /// The file.
+        file: String,
+        /// Line, column and what was expected.
+        message: String,
+    },
+    /// A constant makes no sense.
+    #[error("{file}: `{key}` is {value}, expected {expected}")]
+    Value {
+        /// The file.
+        file: String,
+        /// The constant.
+        key: &'static str,
+        /// What it was.
+        value: String,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// There is no machine of that name.
+    #[error("no machine `{name}`; there are: {known}")]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+}
+
+/// The presets: adding one is a file and a line here.
+const PRESETS: &[(&str, &str)] = &[
+    ("e4000", include_str!("presets/e4000.toml")),
+    ("pentium3x2", include_str!("presets/pentium3x2.toml")),
+    ("host", include_str!("presets/host.toml")),
+];
+
+impl Model {
+    /// The names of the presets.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        PRESETS.iter().map(|(name, _)| *name)
+    }
+
+    /// A preset by its name, or a description in a file (a name that ends in `.toml`).
+    ///
+    /// # Errors
+    /// [`ModelError`], naming the file, the line and what was expected.
+    pub fn named(name: &str) -> Result<Self, ModelError> {
+        if let Some((_, text)) = PRESETS.iter().find(|(preset, _)| *preset == name) {
+            return Self::parse(name, text);
+        }
+        if Path::new(name).extension().is_some_and(|e| e == "toml") {
+            let text = std::fs::read_to_string(name)
+                .map_err(|source| ModelError::Read { file: name.to_owned(), source })?;
+            return Self::parse(name, &text);
+        }
+        let known = Self::names().collect::<Vec<_>>().join(", ");
+        Err(ModelError::Unknown { name: name.to_owned(), known: format!("{known}, or a FILE.toml") })
+    }
+
+    /// Reads a description; `file` is for messages.
+    ///
+    /// # Errors
+    /// [`ModelError::Parse`] and [`ModelError::Value`].
+    pub fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
+        let model: Model = toml::from_str(text)
+            .map_err(|e| ModelError::Parse { file: file.to_owned(), message: e.to_string() })?;
+        model.check(file)?;
+        Ok(model)
+    }
+
+    /// Sets one constant by its name, as a sweep over machine settings does.
+    ///
+    /// # Errors
+    /// [`ModelError::Parse`] for an unknown constant, [`ModelError::Value`] for a senseless value.
+    pub fn set(&mut self, key: &str, value: f64) -> Result<(), ModelError> {
+        let file = format!("machine `{}`", self.name);
+        let mut table = toml::Table::try_from(&*self).expect("a model is a table");
+        let whole = value.fract() == 0.0 && value.abs() < 1e15;
+        let entry = match table.get(key) {
+            Some(toml::Value::Integer(_)) if whole => toml::Value::Integer(value as i64),
+            Some(toml::Value::Integer(_)) => {
+                let message = format!("`{key}` = {value}: expected a whole number");
+                return Err(ModelError::Parse { file, message });
+            }
+            Some(toml::Value::Float(_)) => toml::Value::Float(value),
+            _ => {
+                let keys = table.iter().filter(|(_, v)| !v.is_str()).map(|(k, _)| k.as_str());
+                let keys = keys.collect::<Vec<_>>().join(", ");
+                let message = format!("no constant `{key}`; there are: {keys}");
+                return Err(ModelError::Parse { file, message });
+            }
+        };
+        table.insert(key.to_owned(), entry);
+        let model = table.try_into::<Model>();
+        *self = model.map_err(|e| ModelError::Parse { file: file.clone(), message: e.to_string() })?;
+        self.check(&file)
+    }
+
+    fn check(&self, file: &str) -> Result<(), ModelError> {
+        let wrong = |key, value: String, expected| {
+            Err(ModelError::Value { file: file.to_owned(), key, value, expected })
+        };
+        if !self.line_bytes.is_power_of_two() || !(16..=128).contains(&self.line_bytes) {
+            return wrong("line_bytes", self.line_bytes.to_string(), "a power of two from 16 to 128");
+        }
+        for (key, lines) in [("l1_lines", self.l1_lines), ("l2_lines", self.l2_lines)] {
+            if !lines.is_power_of_two() || lines > 1 << 24 {
+                return wrong(key, lines.to_string(), "a power of two up to 2^24");
+            }
+        }
+        if self.processors == 0 || self.processors > super::MOST {
+            return wrong("processors", self.processors.to_string(), "1 to 4096");
+        }
+        if self.store_buffer == 0 {
+            return wrong("store_buffer", "0".to_owned(), "at least 1");
+        }
+        let times = [self.l1_hit, self.l2_hit, self.memory, self.cache_to_cache, self.upgrade];
+        let times = times.into_iter().chain([self.bus_occupancy, self.atomic, self.fence, self.poll_pause]);
+        if let Some(time) = times.into_iter().find(|&t| t > 1_000_000) {
+            return wrong("a time", time.to_string(), "at most 1,000,000 cycles");
+        }
+        if self.l1_hit == 0 || self.poll_pause == 0 {
+            return wrong("l1_hit or poll_pause", "0".to_owned(), "at least 1 cycle, or waiting takes no time");
+        }
+        for (key, value) in
+            [("clock_mhz", self.clock_mhz), ("cycles_per_measured_ns", self.cycles_per_measured_ns)]
+        {
+            if !(value.is_finite() && value > 0.0) {
+                return wrong(key, value.to_string(), "a finite number above 0");
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_parse_and_carry_their_names() {
+        for name in Model::names() {
+            assert_eq!(Model::named(name).unwrap().name, name);
+        }
+    }
+
+    #[test]
+    fn bad_input_says_where_and_what() {
+        let says = |text: &str| Model::parse("my.toml", text).unwrap_err().to_string();
+        assert!(says("name = 3").contains("my.toml"), "{}", says("name = 3"));
+        assert!(says("name = 3").contains("line 1"));
+        let mut text = PRESETS[0].1.replace("line_bytes = 32", "line_bytes = 33");
+        assert!(says(&text).contains("`line_bytes` is 33, expected a power of two"));
+        text = PRESETS[0].1.replace("line_bytes = 32", "line_bites = 32");
+        assert!(says(&text).contains("line_bites"));
+        assert!(Model::named("e400").unwrap_err().to_string().contains("e4000"));
+    }
+
+    #[test]
+    fn constants_can_be_set_by_name() {
+        let mut model = Model::named("e4000").unwrap();
+        model.set("cache_to_cache", 250.0).unwrap();
+        assert_eq!(model.cache_to_cache, 250);
+        assert!(model.set("cache_to_cash", 1.0).unwrap_err().to_string().contains("cache_to_cache"));
+        assert!(model.set("memory", 0.5).is_err());
+        assert!(model.set("store_buffer", 0.0).is_err());
+    }
+}

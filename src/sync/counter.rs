@@ -1,0 +1,60 @@
+//! A counter that every processor draws from: the heart of Paper II's global counter scheme.
+//!
+//! Invariant: each draw gives another number, and the numbers drawn are 0, 1, 2, ... without gaps.
+
+use super::LockKind;
+use super::lock::{Words, hold};
+use crate::machine::{Layout, Machine, Shared, Word};
+use std::sync::atomic::Ordering;
+
+/// How a draw is made indivisible.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CounterKind {
+    /// Under a lock, as in the paper (section 3.2).
+    Locked(LockKind),
+    /// By one fetch-and-add, as its footnote 1 suggests.
+    FetchAdd,
+}
+
+/// A shared counter.
+pub struct Counter<M: Machine> {
+    kind: CounterKind,
+    /// The lock's words if there is a lock, then the count.
+    words: Shared<M::Word>,
+}
+
+impl<M: Machine> Counter<M> {
+    /// A counter at zero.
+    pub fn new(machine: &M, kind: CounterKind, layout: Layout, processors: usize) -> Self {
+        let lock = match kind {
+            CounterKind::Locked(kind) => kind.words(processors),
+            CounterKind::FetchAdd => 0,
+        };
+        Counter { kind, words: machine.alloc(lock + 1, layout, |_| Word::new(0)) }
+    }
+
+    fn count(&self) -> &M::Word {
+        &self.words[self.words.len() - 1]
+    }
+
+    /// Draws the next number.
+    pub fn draw(&self, cpu: &M::Processor) -> u64 {
+        match self.kind {
+            CounterKind::Locked(kind) => {
+                let _held = hold(kind, Words::new(&self.words, 0), cpu);
+                // ORDERING: Relaxed: the lock orders both.
+                let drawn = self.count().load(Ordering::Relaxed);
+                self.count().store(drawn.wrapping_add(1), Ordering::Relaxed);
+                drawn
+            }
+            // ORDERING: Relaxed: the number itself is all that is taken; tasks travel through queues.
+            CounterKind::FetchAdd => self.count().fetch_add(1, Ordering::Relaxed),
+        }
+    }
+
+    /// Sets the counter back to zero; nobody may be drawing.
+    pub fn reset(&self) {
+        // ORDERING: Relaxed: between runs.
+        self.count().store(0, Ordering::Relaxed);
+    }
+}

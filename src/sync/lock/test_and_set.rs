@@ -1,0 +1,21 @@
+//! Test-and-set: every try is a write, so every waiter pulls the line over on every try.
+
+use super::Words;
+use crate::machine::{Processor, Word};
+use std::sync::atomic::Ordering;
+
+pub(super) fn words(_processors: usize) -> usize {
+    1
+}
+
+pub(super) fn acquire<P: Processor>(words: Words<'_, P::Word>, cpu: &P) {
+    // ORDERING: Acquire pairs with the Release in `release`.
+    while words.at(0).test_and_set(Ordering::Acquire) {
+        cpu.spin();
+    }
+}
+
+pub(super) fn release<P: Processor>(words: Words<'_, P::Word>, _cpu: &P) {
+    // ORDERING: Release pairs with the Acquire in `acquire`.
+    words.at(0).store(0, Ordering::Release);
+}

@@ -170,8 +170,16 @@ pub trait Machine: Sync {
         processors: usize,
         body: impl Fn(&Self::Processor) -> L + Sync,
     ) -> Result<Vec<L>, RunError>;
+    /// Runs `body` on processor 0 alone, with as little ado as the machine can.
+    ///
+    /// # Errors
+    /// [`RunError::Panicked`].
+    fn alone<L: Send>(&self, body: impl FnOnce(&Self::Processor) -> L + Send) -> Result<L, RunError>;
     /// The machine's clock between runs, in ticks.
     fn now(&self) -> u64;
+    /// Roughly what it costs, in ticks, to start and end an empty run on `processors` processors as the
+    /// machine is now: what work must be able to save before sharing it is even tried.
+    fn start_ticks(&self, processors: usize) -> u64;
     /// Ticks a nanosecond: 1 natively, the clock rate in GHz on a simulated machine.
     fn ticks_per_nanosecond(&self) -> f64 {
         1.0

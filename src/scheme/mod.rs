@@ -1,1 +1,6 @@
-//! How work is shared out, by the shape of the work.
+//! How work is shared out, by the shape of the work. A scheme knows nothing of boxes or rays.
+
+mod settings;
+pub mod tree;
+
+pub use settings::{SettingError, Settings};

@@ -200,6 +200,12 @@ impl<M: Machine> Receiver<M> {
         self.ring.tail()
     }
 
+    /// Whether there are tasks that have not been taken.
+    pub fn has_arrivals(&self) -> bool {
+        // ORDERING: Relaxed: only `pop` and `look` follow up on it, with Acquire.
+        self.ring.tail().load(Ordering::Relaxed) != self.head
+    }
+
     /// Tasks seen and not yet taken: a look at this end's own memory only.
     pub fn len(&self) -> usize {
         (self.tail - self.head) as usize

@@ -261,6 +261,20 @@ impl Machine for Simulated {
         }
     }
 
+    fn alone<L: Send>(&self, body: impl FnOnce(&VirtualProcessor) -> L + Send) -> Result<L, RunError> {
+        let body = Mutex::new(Some(body));
+        let once = |cpu: &VirtualProcessor| {
+            let body = body.lock().unwrap_or_else(|e| e.into_inner()).take();
+            body.expect("one processor calls it once")(cpu)
+        };
+        Ok(self.run(1, once)?.pop().expect("one result"))
+    }
+
+    fn start_ticks(&self, processors: usize) -> u64 {
+        // Each processor's copy of the start word, and its turn at the finishing count.
+        processors as u64 * 2 * self.model.cache_to_cache
+    }
+
     fn now(&self) -> u64 {
         self.lock().now
     }

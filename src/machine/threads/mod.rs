@@ -7,8 +7,9 @@ mod team;
 mod word;
 
 use crate::machine::shared::Heap;
-use crate::machine::{Ended, Layout, Machine, Processor, RunError, Shared};
+use crate::machine::{Ended, Layout, Machine, Processor, RunError, Shared, panic_message};
 use std::cell::UnsafeCell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -48,6 +49,8 @@ impl Default for TeamSettings {
 pub struct Threads {
     team: Team,
     started: Instant,
+    /// The calling thread's handle when it runs alone.
+    alone: Thread,
 }
 
 impl Threads {
@@ -67,7 +70,7 @@ impl Threads {
         if processors == 0 || processors > MOST {
             return Err(RunError::Processors { asked: processors, most: MOST, machine: "threads".to_owned() });
         }
-        Ok(Threads { team: Team::start(processors, settings)?, started: now() })
+        Ok(Threads { team: Team::start(processors, settings)?, started: now(), alone: Thread::outside(0, 1) })
     }
 
     /// Whether a run on `processors` would have to wake a sleeping helper.
@@ -198,6 +201,18 @@ impl Machine for Threads {
             unsafe { *results_ref.0[thread.id].get() = Some(value) };
         })?;
         Ok(results.0.into_iter().map(|cell| cell.into_inner().expect("every worker finished")).collect())
+    }
+
+    #[inline]
+    fn alone<L: Send>(&self, body: impl FnOnce(&Thread) -> L + Send) -> Result<L, RunError> {
+        catch_unwind(AssertUnwindSafe(|| body(&self.alone)))
+            .map_err(|payload| RunError::Panicked { processor: 0, message: panic_message(&*payload) })
+    }
+
+    fn start_ticks(&self, processors: usize) -> u64 {
+        // A spinning helper sees a post within a few line transfers; waking a parked one takes a system
+        // call here and a scheduler's decision there.
+        if processors > 1 && self.is_parked(processors) { 50_000 } else { 500 }
     }
 
     fn now(&self) -> u64 {

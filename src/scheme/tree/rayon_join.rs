@@ -1,0 +1,76 @@
+//! `rayon::join` at every node, on rayon's own threads: what most Rust programs do today.
+//!
+//! The tasks below a node are halved until one is left. Rayon's workers park on their own terms.
+
+use super::{Share, Task, TreeWork};
+use crate::machine::threads::Thread;
+use crate::machine::{Machine, RunError, panic_message};
+use crate::scheme::{SettingError, Settings};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::marker::PhantomData;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+
+pub(super) const SUMMARY: &str = "crate rayon, join at every node (rival; threads only)";
+
+pub(super) struct RayonJoin<M> {
+    /// Made on the first run, so that a system that refuses threads is an error of the run.
+    pool: Option<ThreadPool>,
+    processors: usize,
+    machine: PhantomData<fn(M)>,
+}
+
+/// One share a worker. Its lock is free whenever it is taken: a worker visits one task at a time.
+type Shares<F> = Vec<Mutex<Share<F>>>;
+
+impl<M: Machine> RayonJoin<M> {
+    pub(super) fn new(machine: &M, processors: usize, settings: &Settings) -> Result<Self, SettingError> {
+        settings.native_only(machine)?;
+        Ok(RayonJoin { pool: None, processors, machine: PhantomData })
+    }
+
+    pub(super) fn run<W: TreeWork>(
+        &mut self,
+        _machine: &M,
+        work: &W,
+    ) -> Result<Vec<Share<W::Found>>, RunError> {
+        let pool = match &mut self.pool {
+            Some(pool) => pool,
+            none => {
+                let builder = ThreadPoolBuilder::new().num_threads(self.processors);
+                let refused = |e| RunError::System { what: "a rayon pool", source: std::io::Error::other(e) };
+                none.insert(builder.build().map_err(refused)?)
+            }
+        };
+        let count = self.processors;
+        let shares: Shares<W::Found> =
+            (0..count).map(|_| Mutex::new(Share { found: work.found(), visited: 0 })).collect();
+        let whole = || pool.install(|| work.root().into_iter().for_each(|root| down(work, &shares, root)));
+        catch_unwind(AssertUnwindSafe(whole))
+            .map_err(|payload| RunError::Panicked { processor: 0, message: panic_message(&*payload) })?;
+        Ok(shares.into_iter().map(|share| share.into_inner().expect("no visit panicked")).collect())
+    }
+}
+
+fn down<W: TreeWork>(work: &W, shares: &Shares<W::Found>, task: W::Task) {
+    let me = rayon::current_thread_index().unwrap_or(0);
+    let mut below = Vec::new();
+    {
+        let mut share = shares[me].lock().unwrap_or_else(|e| e.into_inner());
+        share.visited += 1;
+        let cpu = Thread::outside(me, shares.len());
+        work.visit(task, &mut share.found, &cpu, |task| below.push(task.pack()));
+    }
+    split(work, shares, &below);
+}
+
+fn split<W: TreeWork>(work: &W, shares: &Shares<W::Found>, tasks: &[u64]) {
+    match tasks {
+        [] => {}
+        [one] => down(work, shares, W::Task::unpack(*one)),
+        more => {
+            let (left, right) = more.split_at(more.len() / 2);
+            rayon::join(|| split(work, shares, left), || split(work, shares, right));
+        }
+    }
+}

@@ -34,13 +34,13 @@ pub struct Description {
     /// Bytes of vertices, triangles and nodes in memory, without names.
     pub bytes: usize,
     /// How skinny half of the triangles are at most: longest edge over the height on it, 1.15 for an
-    /// equilateral one. Each mesh once, triangles without area left out; 0 if there are none.
+    /// equilateral one. In the world, triangles without area left out; 0 if there are none.
     pub aspect_p50: f64,
     /// The same for nine tenths.
     pub aspect_p90: f64,
     /// The same for ninety-nine hundredths.
     pub aspect_p99: f64,
-    /// Triangles without area, each mesh once.
+    /// Triangles without area, in the world.
     pub zero_area: usize,
 }
 
@@ -75,7 +75,7 @@ pub fn describe(scene: &Scene) -> Description {
         aspect_p50: percentile(0.5),
         aspect_p90: percentile(0.9),
         aspect_p99: percentile(0.99),
-        zero_area: unique_triangles - aspects.len(),
+        zero_area: instanced_triangles - aspects.len(),
     }
 }
 
@@ -91,16 +91,19 @@ fn depths(scene: &Scene) -> Vec<usize> {
     histogram
 }
 
-/// Aspects of all triangles that have an area, least first.
+/// Aspects of all triangles in the world that have an area, least first.
 fn aspects(scene: &Scene) -> Vec<f64> {
     let mut aspects = Vec::new();
-    for mesh in &scene.meshes {
+    for (node, world) in scene.nodes.iter().zip(scene.world_transforms()) {
+        let Some(mesh) = node.mesh.map(|mesh| &scene.meshes[mesh as usize]) else { continue };
+        // In f64, so that placing a triangle neither gives it an area nor takes it away.
+        let turn = world.matrix3.as_dmat3();
         for triangle in &mesh.triangles {
-            let [a, b, c] = triangle.map(|vertex| mesh.positions[vertex as usize].as_dvec3());
+            let [a, b, c] = triangle.map(|vertex| turn * mesh.positions[vertex as usize].as_dvec3());
             let twice_area = (b - a).cross(c - a).length();
             let longest =
                 (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
-            // Below this, in f64 from f32 corners, the area is rounding.
+            // Below this the area is rounding.
             if twice_area > longest * 1e-12 {
                 aspects.push(longest / twice_area);
             }

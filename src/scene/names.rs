@@ -4,7 +4,7 @@
 pub(super) fn advice<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
     let wanted = name.to_lowercase();
     let near = |other: &&str| {
-        edit_distance(&wanted, other) <= 1 + other.chars().count() / 4
+        edit_distance(&wanted, other) <= 1 + other.chars().count() / 6
             || (wanted.len() >= 3 && other.contains(&wanted))
     };
     let listed: Vec<&str> = known.clone().filter(near).collect();

@@ -18,7 +18,8 @@ impl Scene {
         self.check_nodes(file)?;
         self.check_forest(file)?;
         for (index, bounds) in self.world_bounds().into_iter().enumerate() {
-            if !bounds.is_empty() && !(bounds.min.is_finite() && bounds.max.is_finite()) {
+            let finite = bounds.min.is_finite() && bounds.max.is_finite();
+            if !finite && !bounds.is_empty() {
                 return Err(SceneError::malformed(
                     file,
                     self.node_place(index),

@@ -16,20 +16,20 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let file = &path.display().to_string();
     let bytes = error::read(path)?;
     check_header(file, &bytes)?;
-    let gltf = gltf::Gltf::from_slice(&bytes).map_err(|error| {
-        SceneError::malformed(
-            file,
-            "document",
-            error.to_string().trim_end_matches(';'),
-            "a valid glTF 2.0 file",
-        )
-    })?;
-    let buffers = Buffers::read(file, path, &gltf.document, gltf.blob)?;
+    let invalid = |error: gltf::Error| {
+        let found = error.to_string();
+        SceneError::malformed(file, "document", found.trim_end_matches(';'), "a valid glTF 2.0 file")
+    };
+    let gltf = gltf::Gltf::from_slice_without_validation(&bytes).map_err(invalid)?;
+    let json = gltf.document.into_json();
+    check_positions(file, &json)?;
+    let document = gltf::Document::from_json(json).map_err(invalid)?;
+    let buffers = Buffers::read(file, path, &document, gltf.blob)?;
     let mut scene = Scene::new(file);
-    for mesh in gltf.document.meshes() {
+    for mesh in document.meshes() {
         scene.meshes.push(read_mesh(file, &buffers, &mesh)?);
     }
-    add_nodes(file, &gltf.document, &mut scene)?;
+    add_nodes(file, &document, &mut scene)?;
     Ok(scene)
 }
 
@@ -48,6 +48,23 @@ fn check_header(file: &str, bytes: &[u8]) -> Result<(), SceneError> {
         }
         _ => Err(SceneError::malformed(file, "header", "no usable length", "12 bytes of GLB header")),
     }
+}
+
+/// The validation of crate `gltf` looks up the accessor of each POSITION before it has checked that there
+/// is one of that number.
+fn check_positions(file: &str, json: &gltf::json::Root) -> Result<(), SceneError> {
+    let semantic = gltf::json::validation::Checked::Valid(gltf::Semantic::Positions);
+    let count = json.accessors.len();
+    for (number, mesh) in json.meshes.iter().enumerate() {
+        for accessor in mesh.primitives.iter().filter_map(|primitive| primitive.attributes.get(&semantic)) {
+            if accessor.value() >= count {
+                let found = format!("POSITION in accessor {}", accessor.value());
+                let expected = format!("an accessor below {count}");
+                return Err(SceneError::malformed(file, format!("mesh {number}"), found, expected));
+            }
+        }
+    }
+    Ok(())
 }
 
 fn read_mesh(file: &str, buffers: &Buffers<'_>, mesh: &gltf::Mesh<'_>) -> Result<Mesh, SceneError> {

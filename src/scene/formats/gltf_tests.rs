@@ -88,6 +88,10 @@ fn faults_are_named() {
             "buffer view past the end",
         ),
         (edited(r#""byteLength":60"#, r#""byteLength":61000"#), "buffer 0: only 60 bytes"),
+        (
+            edited(r#""POSITION":0"#, r#""POSITION":7"#),
+            "POSITION in accessor 7; expected an accessor below 2",
+        ),
         (edited(r#""children":[1,2]"#, r#""children":[1,0]"#), "node 0 \"top\": it is reached twice"),
         (edited(r#""children":[1,2]"#, r#""children":[1,9]"#), "document: invalid glTF"),
         (edited("5126", "5123"), "accessor 0"),

@@ -29,7 +29,7 @@ pub(super) fn cuboid(name: &str, size: Vec3) -> Mesh {
 /// # Panics
 /// If `count` is odd or below [`LEAST_CYLINDER`].
 pub(super) fn cylinder(name: &str, radius: f32, height: f32, count: u32) -> Mesh {
-    assert!(count >= LEAST_CYLINDER && count % 2 == 0, "{count} triangles cannot make a cylinder");
+    assert!(count >= LEAST_CYLINDER && count.is_multiple_of(2), "{count} triangles cannot make a cylinder");
     // As many rings as keep the triangles around the side from getting skinny.
     let rings = (1..).find(|h| (count + 4) / (2 * (h + 1)) <= 12 * h).unwrap_or(1);
     let sides = ((count + 4) / (2 * (rings + 1))).max(3);

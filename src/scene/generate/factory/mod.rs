@@ -10,7 +10,6 @@
 //! are deep chains, racks and conveyors wide fans, so the tree is deep in places, wide in others and
 //! nowhere balanced. All parts are closed meshes of real size, so they can be collided.
 
-use super::super::Scene;
 use super::{Aisles, Generator};
 
 mod layout;
@@ -131,7 +130,7 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::describe;
+    use crate::scene::{Scene, describe};
 
     #[test]
     fn counts_are_exact_and_graphs_valid() {

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{Node, Scene};
 
-/// What a scene holds. How unbalanced the tree over it is, [`crate::structure::TreeStatistics`] says.
+/// What a scene holds. How unbalanced the tree over it is, the statistics of the structure room say.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Description {
     /// Name of the scene.

@@ -1,1 +1,15 @@
-//! Boxes, spheres, frusta, planes: pure functions, f32 kernels with f64 oracles beside them.
+//! Boxes, planes, cameras, frusta: pure functions, f32 kernels with an f64 oracle beside them.
+//!
+//! Lengths are in metres, angles in radians, unless a line says otherwise. Nothing here allocates.
+
+mod aabb;
+mod camera;
+pub mod culling;
+mod frustum;
+pub mod oracle;
+mod plane;
+
+pub use aabb::Aabb;
+pub use camera::{Camera, CameraError, Lens};
+pub use frustum::Frustum;
+pub use plane::{PLANE_COUNT, Plane};

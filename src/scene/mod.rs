@@ -1,1 +1,22 @@
-//! What is modelled.
+//! What is modelled: a graph of transforms, meshes, camera paths; from files or generated.
+//!
+//! Lengths are in metres; y is up in generated scenes. A new file format is one file in `formats/` and
+//! one line in its list; a new generator one file in `generate/` and one line in its list.
+
+mod describe;
+mod error;
+mod formats;
+mod generate;
+mod graph;
+mod names;
+mod path;
+mod random;
+mod validate;
+
+pub use describe::{Description, describe};
+pub use error::SceneError;
+pub use formats::{FORMATS, Format, load};
+pub use generate::{Aisles, GENERATORS, Generator, by_name};
+pub use graph::{Mesh, Node, Scene};
+pub use path::CameraPath;
+pub use random::SplitMix64;

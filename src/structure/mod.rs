@@ -1,1 +1,34 @@
-//! What is built over a scene.
+//! What is built over a scene: trees of boxes, and what is to be said of their shape.
+
+mod aabb_tree;
+mod skip_tree;
+mod statistics;
+
+pub use aabb_tree::{AabbTree, AabbTreeNode};
+pub use skip_tree::{SkipNode, SkipTree};
+pub use statistics::TreeStatistics;
+
+use thiserror::Error;
+
+/// What stands in for a scene node where a tree node was made for none: the root put over a scene that
+/// has several.
+pub const NO_SOURCE: u32 = u32::MAX;
+
+/// A tree that does not hold what it must.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("tree node {node}: {fault}")]
+pub struct TreeError {
+    /// The node, by index.
+    pub node: u32,
+    /// What is wrong with it.
+    pub fault: String,
+}
+
+impl TreeError {
+    fn new(node: usize, fault: impl Into<String>) -> Self {
+        Self { node: node as u32, fault: fault.into() }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,1 +1,4 @@
 //! One binary for all integration tests: oracles, goldens in virtual time, invariants, command line, house rules.
+
+mod scene;
+mod structure;

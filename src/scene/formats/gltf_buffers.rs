@@ -1,0 +1,133 @@
+//! The bytes behind a glTF file, and numbers read out of them with every bound checked: the reader of
+//! crate `gltf` trusts counts and strides, and a damaged file would make it panic.
+
+use std::path::Path;
+
+use gltf::accessor::{DataType, Dimensions};
+
+use super::super::{SceneError, error};
+use super::base64;
+
+/// The buffers of a document, by index.
+pub(super) struct Buffers<'a> {
+    file: &'a str,
+    data: Vec<Vec<u8>>,
+}
+
+impl<'a> Buffers<'a> {
+    /// Collects the buffers: the binary chunk, files beside the document, data URIs.
+    pub(super) fn read(
+        file: &'a str,
+        path: &Path,
+        document: &gltf::Document,
+        mut blob: Option<Vec<u8>>,
+    ) -> Result<Self, SceneError> {
+        let mut data = Vec::new();
+        for buffer in document.buffers() {
+            let fail = |found: &str, expected: &str| {
+                SceneError::malformed(file, format!("buffer {}", buffer.index()), found, expected)
+            };
+            let bytes = match buffer.source() {
+                gltf::buffer::Source::Bin => {
+                    blob.take().ok_or_else(|| fail("no binary chunk", "a GLB file with a BIN chunk"))?
+                }
+                gltf::buffer::Source::Uri(uri) => match uri.strip_prefix("data:") {
+                    Some(rest) => rest
+                        .split_once(";base64,")
+                        .and_then(|(_, text)| base64::decode(text))
+                        .ok_or_else(|| fail("a damaged data URI", "data:...;base64,..."))?,
+                    None if uri.contains("://") => {
+                        return Err(fail(&format!("the address {uri:?}"), "a file beside the document"));
+                    }
+                    None => error::read(&path.with_file_name(unescape(uri)))?,
+                },
+            };
+            if bytes.len() < buffer.length() {
+                let expected = format!("{} bytes", buffer.length());
+                return Err(fail(&format!("only {} bytes", bytes.len()), &expected));
+            }
+            data.push(bytes);
+        }
+        Ok(Self { file, data })
+    }
+
+    /// The items of an accessor, each handed to `item` as its bytes.
+    fn items<T>(
+        &self,
+        accessor: &gltf::Accessor<'_>,
+        item: impl Fn(&[u8]) -> T,
+    ) -> Result<Vec<T>, SceneError> {
+        let fail = |found: &str, expected: &str| {
+            SceneError::malformed(self.file, format!("accessor {}", accessor.index()), found, expected)
+        };
+        if accessor.sparse().is_some() {
+            return Err(fail("sparse values", "values in full"));
+        }
+        let view = accessor.view().ok_or_else(|| fail("no buffer view", "one"))?;
+        let bytes = view
+            .offset()
+            .checked_add(view.length())
+            .and_then(|end| self.data[view.buffer().index()].get(view.offset()..end))
+            .ok_or_else(|| fail("a buffer view past the end of its buffer", "one within"))?;
+        let (size, count) = (accessor.size(), accessor.count());
+        let stride = view.stride().unwrap_or(size);
+        let needed = count.checked_sub(1).map_or(Some(0), |last| {
+            last.checked_mul(stride)?.checked_add(size)?.checked_add(accessor.offset())
+        });
+        if stride < size || needed.is_none_or(|needed| needed > bytes.len()) {
+            let found = format!("{count} items at a stride of {stride} bytes from {}", accessor.offset());
+            return Err(fail(&found, &format!("no more than the view's {} bytes", bytes.len())));
+        }
+        let start = |i: usize| accessor.offset() + i * stride;
+        Ok((0..count).map(|i| item(&bytes[start(i)..start(i) + size])).collect())
+    }
+
+    /// Vertex positions.
+    pub(super) fn positions(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<[f32; 3]>, SceneError> {
+        let kind = (accessor.data_type(), accessor.dimensions());
+        if kind != (DataType::F32, Dimensions::Vec3) {
+            return Err(self.wrong_kind(accessor, "positions of three 32-bit floats"));
+        }
+        let number = |b: &[u8], i: usize| f32::from_le_bytes([b[i], b[i + 1], b[i + 2], b[i + 3]]);
+        self.items(accessor, |b| [number(b, 0), number(b, 4), number(b, 8)])
+    }
+
+    /// Vertex indices, of any width.
+    pub(super) fn indices(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<u32>, SceneError> {
+        match (accessor.data_type(), accessor.dimensions()) {
+            (DataType::U8, Dimensions::Scalar) => self.items(accessor, |b| u32::from(b[0])),
+            (DataType::U16, Dimensions::Scalar) => {
+                self.items(accessor, |b| u32::from(u16::from_le_bytes([b[0], b[1]])))
+            }
+            (DataType::U32, Dimensions::Scalar) => {
+                self.items(accessor, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+            }
+            _ => Err(self.wrong_kind(accessor, "indices of 8, 16 or 32 bits")),
+        }
+    }
+
+    fn wrong_kind(&self, accessor: &gltf::Accessor<'_>, expected: &str) -> SceneError {
+        let found = format!("{:?} of {:?}", accessor.dimensions(), accessor.data_type());
+        SceneError::malformed(self.file, format!("accessor {}", accessor.index()), found, expected)
+    }
+}
+
+/// Undoes the percent escapes of a relative address.
+fn unescape(uri: &str) -> String {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let [first, tail @ ..] = rest {
+        let code = tail.get(..2).and_then(|hex| std::str::from_utf8(hex).ok());
+        match code.and_then(|hex| u8::from_str_radix(hex, 16).ok()).filter(|_| *first == b'%') {
+            Some(byte) => {
+                bytes.push(byte);
+                rest = &tail[2..];
+            }
+            None => {
+                bytes.push(*first);
+                rest = tail;
+            }
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}

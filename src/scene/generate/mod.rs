@@ -1,0 +1,58 @@
+//! Generated scenes. The list is the table of contents.
+
+use super::{Scene, SceneError, names};
+
+mod factory;
+mod shapes;
+
+/// A scene made by a program.
+pub struct Generator {
+    /// Name: in the command line, in rows, in legends.
+    pub name: &'static str,
+    /// What it is, in a few words.
+    pub about: &'static str,
+    generate: fn() -> Scene,
+    aisles: fn() -> Aisles,
+}
+
+impl Generator {
+    /// Makes the scene; the same one each time.
+    pub fn generate(&self) -> Scene {
+        (self.generate)()
+    }
+
+    /// Where a person can walk in it.
+    pub fn aisles(&self) -> Aisles {
+        (self.aisles)()
+    }
+}
+
+/// Where a person can walk in a generated scene: straight aisles along x and along z that all cross.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Aisles {
+    /// Where the aisles along z lie: their x, in metres, least first.
+    pub x: Vec<f32>,
+    /// Where the aisles along x lie: their z, in metres, least first.
+    pub z: Vec<f32>,
+    /// Far plane that takes in the whole hall from anywhere in it, in metres.
+    pub far: f32,
+}
+
+/// All generators.
+pub const GENERATORS: &[Generator] = &[factory::LARGE, factory::MEDIUM, factory::SMALL];
+
+/// Makes a scene by its name.
+///
+/// # Errors
+/// [`SceneError::UnknownName`], listing the near names.
+pub fn by_name(name: &str) -> Result<Scene, SceneError> {
+    generator(name).map(Generator::generate)
+}
+
+/// The generator of that name.
+pub(super) fn generator(name: &str) -> Result<&'static Generator, SceneError> {
+    GENERATORS.iter().find(|generator| generator.name == name).ok_or_else(|| SceneError::UnknownName {
+        name: name.to_string(),
+        advice: names::advice(name, GENERATORS.iter().map(|generator| generator.name)),
+    })
+}

@@ -1,0 +1,136 @@
+//! The scene graph: a forest of transforms with meshes on it.
+
+use glam::{Affine3A, Vec3};
+
+use crate::geometry::Aabb;
+
+/// A scene: a forest of nodes that place meshes in the world.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// What it is called: the name of its generator or of its file.
+    pub name: String,
+    /// All nodes.
+    pub nodes: Vec<Node>,
+    /// All meshes; several nodes may share one.
+    pub meshes: Vec<Mesh>,
+    /// The nodes without a parent, by index.
+    pub roots: Vec<u32>,
+}
+
+/// A place in the scene graph.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// What it is called; need not be unique.
+    pub name: String,
+    /// The node above, by index.
+    pub parent: Option<u32>,
+    /// The nodes below, by index.
+    pub children: Vec<u32>,
+    /// From this node's space to its parent's; lengths in metres.
+    pub transform: Affine3A,
+    /// The mesh placed here, by index. A node may have a mesh and children both.
+    pub mesh: Option<u32>,
+}
+
+/// A triangle mesh in the space of the nodes that place it.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    /// What it is called; need not be unique.
+    pub name: String,
+    /// Vertices, in metres.
+    pub positions: Vec<Vec3>,
+    /// Triangles by vertex index; anticlockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// The smallest box around all vertices.
+    pub bounds: Aabb,
+}
+
+impl Mesh {
+    /// A mesh with its bounds worked out.
+    pub fn new(name: impl Into<String>, positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
+        let bounds = Aabb::of_points(positions.iter().copied());
+        Self { name: name.into(), positions, triangles, bounds }
+    }
+}
+
+impl Scene {
+    /// An empty scene.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..Self::default() }
+    }
+
+    /// Adds a node under `parent`, or as a root, and returns its index.
+    ///
+    /// # Panics
+    /// If `parent` is not a node of this scene.
+    pub fn add_node(
+        &mut self,
+        parent: Option<u32>,
+        name: impl Into<String>,
+        transform: Affine3A,
+        mesh: Option<u32>,
+    ) -> u32 {
+        let index = self.nodes.len() as u32;
+        match parent {
+            Some(parent) => self.nodes[parent as usize].children.push(index),
+            None => self.roots.push(index),
+        }
+        self.nodes.push(Node { name: name.into(), parent, children: Vec::new(), transform, mesh });
+        index
+    }
+
+    /// Adds a mesh and returns its index.
+    pub fn add_mesh(&mut self, mesh: Mesh) -> u32 {
+        self.meshes.push(mesh);
+        self.meshes.len() as u32 - 1
+    }
+
+    /// All nodes, each after its parent, children in order: the order of a depth-first walk. Works for
+    /// any depth. The scene must be valid (see [`Scene::validate`]).
+    pub fn depth_first(&self) -> Vec<u32> {
+        let mut order = Vec::with_capacity(self.nodes.len());
+        let mut stack: Vec<u32> = self.roots.iter().rev().copied().collect();
+        while let Some(node) = stack.pop() {
+            order.push(node);
+            stack.extend(self.nodes[node as usize].children.iter().rev());
+        }
+        order
+    }
+
+    /// From each node's space to the world's, by node index; lengths in metres. The scene must be valid.
+    pub fn world_transforms(&self) -> Vec<Affine3A> {
+        let mut world = vec![Affine3A::IDENTITY; self.nodes.len()];
+        for index in self.depth_first() {
+            let node = &self.nodes[index as usize];
+            let above = node.parent.map_or(Affine3A::IDENTITY, |parent| world[parent as usize]);
+            world[index as usize] = above * node.transform;
+        }
+        world
+    }
+
+    /// The box around each node's own mesh in the world, by node index; empty where there is no mesh.
+    /// Taken over the placed vertices, so it is as small as an axis-aligned box can be.
+    pub fn world_bounds(&self) -> Vec<Aabb> {
+        let place = |(node, world): (&Node, Affine3A)| match node.mesh {
+            Some(mesh) => {
+                let positions = &self.meshes[mesh as usize].positions;
+                Aabb::of_points(positions.iter().map(|position| world.transform_point3(*position)))
+            }
+            None => Aabb::EMPTY,
+        };
+        self.nodes.iter().zip(self.world_transforms()).map(place).collect()
+    }
+
+    /// The box around everything in the world, in metres; empty for an empty scene.
+    pub fn bounds(&self) -> Aabb {
+        self.world_bounds().into_iter().fold(Aabb::EMPTY, Aabb::union)
+    }
+
+    /// How many nodes place a mesh, and how many triangles that makes, shared meshes counted each time.
+    pub fn instances(&self) -> (usize, usize) {
+        let placed = self.nodes.iter().filter_map(|node| node.mesh);
+        placed.fold((0, 0), |(count, triangles), mesh| {
+            (count + 1, triangles + self.meshes[mesh as usize].triangles.len())
+        })
+    }
+}

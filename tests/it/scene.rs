@@ -1,0 +1,119 @@
+//! Scenes as users get them: generated ones by name, real ones from files when they are there.
+
+use std::path::PathBuf;
+
+use apportion::scene::{self, CameraPath, GENERATORS, Scene};
+
+/// A real scene, or `None` with a note: the package has to pass its tests without them.
+fn real(file: &str) -> Option<Scene> {
+    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/scenes")).join(file);
+    if !path.exists() {
+        eprintln!("skipped: {} is not here", path.display());
+        return None;
+    }
+    Some(scene::load(&path).unwrap_or_else(|error| panic!("{error}")))
+}
+
+/// FNV-1a over everything a generated scene is made of.
+fn fingerprint(scene: &Scene) -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325u64;
+    let mut add = |bytes: &[u8]| {
+        for byte in bytes {
+            hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    };
+    for node in &scene.nodes {
+        add(node.name.as_bytes());
+        add(&node.parent.unwrap_or(u32::MAX).to_le_bytes());
+        add(&node.mesh.unwrap_or(u32::MAX).to_le_bytes());
+        // Adding 0 makes -0 and 0, which are the same place, the same bytes.
+        node.transform.to_cols_array().iter().for_each(|number| add(&(number + 0.0).to_le_bytes()));
+    }
+    for mesh in &scene.meshes {
+        mesh.positions
+            .iter()
+            .flat_map(|p| p.to_array())
+            .for_each(|number| add(&(number + 0.0).to_le_bytes()));
+        mesh.triangles.iter().flatten().for_each(|vertex| add(&vertex.to_le_bytes()));
+    }
+    hash
+}
+
+#[test]
+fn factories_have_the_counts_of_the_papers() {
+    for (name, nodes, triangles) in
+        [("factory-large", 3932, 184_000), ("factory-medium", 1137, 52_000), ("factory-small", 254, 167_000)]
+    {
+        let description = scene::describe(&scene::by_name(name).unwrap());
+        assert_eq!((description.nodes, description.instanced_triangles), (nodes, triangles), "{name}");
+    }
+}
+
+#[test]
+fn generated_scenes_never_change() {
+    let prints: Vec<(&str, u64)> = GENERATORS.iter().map(|g| (g.name, fingerprint(&g.generate()))).collect();
+    // A change here changes every result measured on these scenes: say so in their meta data.
+    let expected = [
+        ("factory-large", 0xcbac75a0bd568767),
+        ("factory-medium", 0x487f3e3237751212),
+        ("factory-small", 0xac230c9066bfe6d1),
+    ];
+    assert_eq!(prints, expected);
+}
+
+#[test]
+fn unknown_names_and_formats_list_the_known() {
+    let message = scene::by_name("factory-lrage").unwrap_err().to_string();
+    assert_eq!(message, "unknown scene \"factory-lrage\"; did you mean factory-large?");
+    assert!(scene::by_name("").unwrap_err().to_string().contains("factory-small"));
+    let message = scene::load("model.step").unwrap_err().to_string();
+    assert!(message.contains("model.step") && message.contains(".gltf, .glb, .obj"), "{message}");
+    let message = scene::load("missing.obj").unwrap_err().to_string();
+    assert!(message.starts_with("missing.obj: cannot be read"), "{message}");
+}
+
+#[test]
+fn every_scene_has_a_path() {
+    for generator in GENERATORS {
+        let scene = generator.generate();
+        assert_eq!(CameraPath::for_scene(&scene, 50, 1).frames.len(), 50);
+        let stranger = Scene { name: "stranger".to_string(), ..scene };
+        assert_eq!(CameraPath::for_scene(&stranger, 50, 1).frames.len(), 50);
+    }
+}
+
+#[test]
+fn reciprocating_saw() {
+    let Some(scene) = real("cad_recip_saw/ReciprocatingSaw.glb") else { return };
+    let description = scene::describe(&scene);
+    assert_eq!((description.nodes, description.meshes, description.depth), (368, 65, 8));
+    assert_eq!((description.unique_triangles, description.instances), (139_594, 113));
+    assert_eq!(description.instanced_triangles, 198_470);
+    assert_eq!(description.aspect_p90.round(), 75.0);
+    assert!((description.aspect_p99 - 808.0).abs() < 2.0);
+}
+
+#[test]
+fn two_cylinder_engine() {
+    let Some(scene) = real("cad_2cylinder_engine/2CylinderEngine.glb") else { return };
+    let description = scene::describe(&scene);
+    assert_eq!((description.nodes, description.meshes, description.depth), (82, 29, 6));
+    assert_eq!((description.unique_triangles, description.instances), (75_730, 67));
+    assert_eq!((description.instanced_triangles, description.zero_area), (121_496, 11_160));
+}
+
+#[test]
+fn architecture_from_obj() {
+    if let Some(scene) = real("sponza/sponza.obj") {
+        let description = scene::describe(&scene);
+        assert_eq!(description.unique_triangles, 66_450);
+        assert_eq!(description.zero_area, 6);
+        assert_eq!(description.depth, 2);
+        assert_eq!((description.aspect_p50 * 10.0).round(), 76.0);
+    }
+    if let Some(scene) = real("building_fzk_haus/fzk_haus.obj") {
+        let description = scene::describe(&scene);
+        assert_eq!(description.unique_triangles, 36_290);
+        assert_eq!((description.aspect_p90.round(), description.aspect_p99.round()), (1844.0, 3466.0));
+    }
+}

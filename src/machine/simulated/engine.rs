@@ -322,9 +322,9 @@ pub(super) fn wait_until(addresses: impl Iterator<Item = usize> + Clone, mut rea
         // SAFETY: the borrow ends before the suspension.
         let yielder = {
             let e = unsafe { &mut *engine };
-            let missed = addresses.clone().any(|a| {
-                e.line_of(a).is_some_and(|line| e.coherence.written_since(line, armed))
-            });
+            let missed = addresses
+                .clone()
+                .any(|a| e.line_of(a).is_some_and(|line| e.coherence.written_since(line, armed)));
             if missed {
                 None
             } else {

@@ -105,9 +105,9 @@ impl Coherence {
     fn sole_sharer(&self, line: u32, p: u16) -> bool {
         let at = line as usize * self.words;
         let row = &self.sharers[at..at + self.words];
-        row.iter().enumerate().all(|(w, &bits)| {
-            bits == if w == usize::from(p) / 64 { 1 << (p % 64) } else { 0 }
-        })
+        row.iter()
+            .enumerate()
+            .all(|(w, &bits)| bits == if w == usize::from(p) / 64 { 1 << (p % 64) } else { 0 })
     }
 
     /// Serves an access of processor `p` to `line` that starts at `now`.

@@ -16,8 +16,8 @@ use crate::machine::{Layout, Machine, Processor, RunError, Shared, Word, panic_m
 use arena::Memory;
 use corosensei::stack::DefaultStack;
 use corosensei::{Coroutine, CoroutineResult};
-use engine::{Engine, Installed};
 pub use engine::Statistics;
+use engine::{Engine, Installed};
 pub use model::{Model, ModelError};
 use std::cell::UnsafeCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -202,8 +202,9 @@ impl Machine for Simulated {
         for (id, result) in results.iter().enumerate() {
             let stack = match stacks.pop() {
                 Some(stack) => stack,
-                None => DefaultStack::new(STACK)
-                    .map_err(|source| RunError::System { what: "a stack", source })?,
+                None => {
+                    DefaultStack::new(STACK).map_err(|source| RunError::System { what: "a stack", source })?
+                }
             };
             let (body, machine) = (&body, self);
             // SAFETY: what the closure borrows lives until the end of this function, and the

@@ -182,7 +182,11 @@ impl Model {
             return wrong("a time", time.to_string(), "at most 1,000,000 cycles");
         }
         if self.l1_hit == 0 || self.poll_pause == 0 {
-            return wrong("l1_hit or poll_pause", "0".to_owned(), "at least 1 cycle, or waiting takes no time");
+            return wrong(
+                "l1_hit or poll_pause",
+                "0".to_owned(),
+                "at least 1 cycle, or waiting takes no time",
+            );
         }
         for (key, value) in
             [("clock_mhz", self.clock_mhz), ("cycles_per_measured_ns", self.cycles_per_measured_ns)]

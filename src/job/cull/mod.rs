@@ -12,11 +12,12 @@
 mod costs;
 mod work;
 
-use crate::geometry::Frustum;
 use crate::geometry::culling::{self, OctantTest, Side, Verdict};
+use crate::geometry::{Frustum, PLANE_COUNT};
 use crate::machine::{Layout, Machine, Shared, Word};
 use crate::structure::SkipTree;
 pub use costs::Costs;
+use std::sync::atomic::Ordering;
 pub use work::{NodeWork, RangeWork, Visible};
 
 /// What the test of a box is made of.
@@ -48,15 +49,16 @@ pub enum Descent {
     NoWork,
 }
 
-/// When a node's record is written.
+/// What is kept with a node from frame to frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Recording {
-    /// When the plane that rejects it is another than last time.
+pub enum History {
+    /// The plane that rejected it, written when it is another than last time.
     #[default]
-    OnChange,
-    /// At every visit, as an implementation with translation and rotation coherency must, which keeps
-    /// with each box whether it was tested in the last frame (P1-12), and which Paper II used.
-    EachVisit,
+    Plane,
+    /// Also the frame in which it was last tested and its signed distances from the six planes, written
+    /// at every visit: what translation and rotation coherency needs (P1-12), and so what the code that
+    /// Paper II shared out kept. Only the traffic of keeping them is here; the test that uses them is not.
+    Distances,
 }
 
 /// Why a frame cannot be culled as asked.
@@ -76,28 +78,31 @@ struct Record<W> {
     /// Index after the subtree.
     end: u32,
     triangles: u32,
-    /// The plane that rejected the box when it was last rejected.
-    rejected_by: W,
+    /// The plane that rejected the box when it was last rejected, in the lowest byte; with
+    /// [`History::Distances`] the frame of its last test above it.
+    tested: W,
 }
+
+/// For each plane the distances of n- and p-vertex, as two `f32` in a word.
+type Distances<W> = [W; PLANE_COUNT];
 
 /// A tree of boxes in the shared memory of a machine.
 pub struct CullTree<M: Machine> {
     records: Shared<Record<M::Word>>,
+    /// With [`History::Distances`]: one a node; empty otherwise.
+    distances: Shared<Distances<M::Word>>,
 }
 
 impl<M: Machine> CullTree<M> {
     /// Copies a skip tree into shared memory, record beside record, depth first.
-    pub fn new(machine: &M, tree: &SkipTree) -> Self {
+    pub fn new(machine: &M, tree: &SkipTree, history: History) -> Self {
         let records = machine.alloc(tree.nodes.len(), Layout::Packed, |i| {
             let node = &tree.nodes[i];
-            Record {
-                bounds: node.bounds,
-                end: node.end,
-                triangles: node.triangles,
-                rejected_by: Word::new(0),
-            }
+            Record { bounds: node.bounds, end: node.end, triangles: node.triangles, tested: Word::new(0) }
         });
-        CullTree { records }
+        let kept = if history == History::Distances { tree.nodes.len() } else { 0 };
+        let distances = machine.alloc(kept, Layout::Packed, |_| std::array::from_fn(|_| Word::new(0)));
+        CullTree { records, distances }
     }
 
     /// How many nodes there are.
@@ -123,11 +128,11 @@ impl<M: Machine> CullTree<M> {
 /// The culling of one tree for one camera.
 pub struct Frame<'a, M: Machine> {
     tree: &'a CullTree<M>,
+    number: usize,
     frustum: &'a Frustum,
     tests: Tests,
     octant: Option<OctantTest<'a>>,
     descent: Descent,
-    recording: Recording,
     costs: Costs,
     /// With [`Descent::NoWork`]: where each box is, found beforehand.
     answers: Vec<Side>,
@@ -149,8 +154,8 @@ impl<'a, M: Machine> Frame<'a, M> {
         } else {
             None
         };
-        let (descent, recording, costs) = (Descent::default(), Recording::default(), Costs::default());
-        Ok(Frame { tree, frustum, tests, octant, descent, recording, costs, answers: Vec::new() })
+        let (descent, costs) = (Descent::default(), Costs::default());
+        Ok(Frame { tree, number: frame, frustum, tests, octant, descent, costs, answers: Vec::new() })
     }
 
     /// Sets which nodes are gone through.
@@ -161,13 +166,6 @@ impl<'a, M: Machine> Frame<'a, M> {
             let test = |record: &Record<M::Word>| culling::basic(&record.bounds, self.frustum).side;
             self.answers = self.tree.records.iter().map(test).collect();
         }
-        self
-    }
-
-    /// Sets when records are written.
-    #[must_use]
-    pub fn recording(mut self, recording: Recording) -> Self {
-        self.recording = recording;
         self
     }
 
@@ -194,20 +192,24 @@ impl<'a, M: Machine> Frame<'a, M> {
         if self.descent == Descent::NoWork {
             return Verdict { side: self.answers[node as usize], tests: 0 };
         }
-        // ORDERING: Relaxed here and below: the word stands for itself, see the head of this file.
-        let first = self
-            .tests
-            .plane_coherency
-            .then(|| record.rejected_by.load(std::sync::atomic::Ordering::Relaxed) as u8);
+        // ORDERING: Relaxed here and below: each word stands for itself, see the head of this file.
+        let first = self.tests.plane_coherency.then(|| record.tested.load(Ordering::Relaxed) as u8);
         let verdict = match (&self.octant, first) {
             (Some(octant), first) => octant.classify(&record.bounds, first),
             (None, Some(first)) => culling::from_plane(&record.bounds, self.frustum, first),
             (None, None) => culling::basic(&record.bounds, self.frustum),
         };
-        if let Some(first) = first {
-            let by = if let Side::Outside(by) = verdict.side { by } else { first };
-            if by != first || self.recording == Recording::EachVisit {
-                record.rejected_by.store(u64::from(by), std::sync::atomic::Ordering::Relaxed);
+        let by = if let Side::Outside(by) = verdict.side { by } else { first.unwrap_or(0) };
+        if self.tree.distances.is_empty() {
+            if first.is_some_and(|first| by != first) {
+                record.tested.store(u64::from(by), Ordering::Relaxed);
+            }
+        } else {
+            record.tested.store((self.number as u64) << 8 | u64::from(by), Ordering::Relaxed);
+            for (word, plane) in self.tree.distances[node as usize].iter().zip(&self.frustum.planes) {
+                let (nearest, farthest) = plane.extremes(&record.bounds);
+                let pair = u64::from(nearest.to_bits()) << 32 | u64::from(farthest.to_bits());
+                word.store(pair, Ordering::Relaxed);
             }
         }
         verdict

@@ -31,7 +31,8 @@ fn every_scheme_and_machine_finds_the_serial_set_and_nothing_visible_is_lost() {
     let (skip, path) = small();
     let threads = Threads::new(4).unwrap();
     let e4000 = Simulated::new(Model::named("e4000").unwrap());
-    let (native, simulated) = (CullTree::new(&threads, &skip), CullTree::new(&e4000, &skip));
+    let (native, simulated) =
+        (CullTree::new(&threads, &skip, History::Plane), CullTree::new(&e4000, &skip, History::Distances));
     let mut seen = 0;
     for (number, camera) in path.frames.iter().enumerate() {
         let frustum = Frustum::new(camera);
@@ -70,7 +71,7 @@ fn every_scheme_and_machine_finds_the_serial_set_and_nothing_visible_is_lost() {
 fn every_combination_of_tests_and_descents_finds_the_same() {
     let (skip, path) = small();
     let threads = Threads::new(1).unwrap();
-    let tree = CullTree::new(&threads, &skip);
+    let tree = CullTree::new(&threads, &skip, History::Plane);
     for (number, camera) in path.frames.iter().enumerate() {
         let frustum = Frustum::new(camera);
         let mut sets = Vec::new();
@@ -91,7 +92,7 @@ fn every_combination_of_tests_and_descents_finds_the_same() {
 fn the_whole_tree_is_visited_when_asked() {
     let (skip, path) = small();
     let threads = Threads::new(2).unwrap();
-    let tree = CullTree::new(&threads, &skip);
+    let tree = CullTree::new(&threads, &skip, History::Plane);
     let frustum = Frustum::new(&path.frames[0]);
     let frame = Frame::new(&tree, 0, &frustum, Tests::default()).unwrap().descent(Descent::WholeTree);
     let mut scheme = Scheme::new("lock_free", &threads, 2, BTreeMap::new()).unwrap();
@@ -105,7 +106,7 @@ fn an_asymmetric_frustum_refuses_the_octant_test() {
     let camera = Camera::look_at(Vec3::ZERO, Vec3::X, Vec3::Z, lens, 0.1, 10.0).unwrap();
     let frustum = Frustum::new(&camera);
     let threads = Threads::new(1).unwrap();
-    let tree = CullTree::new(&threads, &SkipTree::default());
+    let tree = CullTree::new(&threads, &SkipTree::default(), History::Plane);
     let error = Frame::new(&tree, 7, &frustum, Tests::default()).err().unwrap();
     assert!(error.to_string().contains("frame 7"));
     let tests = Tests { octant: false, ..Tests::default() };
@@ -121,7 +122,7 @@ fn what_is_not_a_number_is_never_culled() {
     let threads = Threads::new(1).unwrap();
     let bounds = Aabb { min: Vec3::splat(f32::NAN), max: Vec3::splat(1.0) };
     let node = crate::structure::SkipNode { bounds, end: 1, triangles: 1, source: 0 };
-    let tree = CullTree::new(&threads, &SkipTree { nodes: vec![node] });
+    let tree = CullTree::new(&threads, &SkipTree { nodes: vec![node] }, History::Plane);
     let frame = Frame::new(&tree, 0, &frustum, Tests::default()).unwrap();
     let shares = share("serial", &threads, 1, &frame.ranges()).unwrap();
     assert_eq!(tree.visible(found(&shares)), [0]);

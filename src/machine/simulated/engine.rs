@@ -146,15 +146,16 @@ impl Engine {
         } else if kind == Kind::Store && stores.len() >= self.model.store_buffer {
             clock = clock.max(stores.pop_front().unwrap_or(0));
         }
-        let served = self.coherence.access(&self.model, p as u16, line, access, clock);
+        // Buffered stores go through one after the other; a load does not wait for them.
+        let after = if kind == Kind::Store { stores.back().copied().unwrap_or(0) } else { 0 };
+        let served = self.coherence.access(&self.model, (p as u16, line), access, clock, after);
         match kind {
             Kind::Load => clock = served.done,
             Kind::Atomic => clock = served.done + self.model.atomic,
             Kind::Store => {
                 let stores = &mut self.stores[p];
-                let before = stores.back().copied().unwrap_or(0);
-                if !served.hit || before > clock {
-                    stores.push_back(served.done.max(before));
+                if !served.hit || after > clock {
+                    stores.push_back(served.done.max(after));
                 }
                 clock += self.model.l1_hit;
             }

@@ -2,9 +2,9 @@
 //!
 //! Each line is in one of the states of a MOESI protocol, kept as (owner, dirty, sharers):
 //! modified/exclusive = an owner who is the only sharer; owned = a dirty owner among sharers;
-//! shared = sharers without a dirty owner. A transaction waits for the bus and for the line, occupies
-//! the bus for a while, and holds the line until its requester has it, so that contended lines are
-//! handed on one requester at a time.
+//! shared = sharers without a dirty owner. A transaction waits for the bus and for the line, and
+//! occupies the bus for a while. A line on its way to a new owner is held until that one has it, so
+//! that contended lines are handed on one writer at a time; readers are served side by side.
 
 use super::model::Model;
 
@@ -110,9 +110,17 @@ impl Coherence {
             .all(|(w, &bits)| bits == if w == usize::from(p) / 64 { 1 << (p % 64) } else { 0 })
     }
 
-    /// Serves an access of processor `p` to `line` that starts at `now`.
+    /// Serves an access of processor `p` to `line` that is made at `now`; if it needs a transaction, that
+    /// comes after `after`, when the processor's earlier stores are through.
     #[inline]
-    pub(super) fn access(&mut self, model: &Model, p: u16, line: u32, access: Access, now: u64) -> Served {
+    pub(super) fn access(
+        &mut self,
+        model: &Model,
+        (p, line): (u16, u32),
+        access: Access,
+        now: u64,
+        after: u64,
+    ) -> Served {
         if access == Access::Write {
             self.writes += 1;
             self.lines[line as usize].written = self.writes;
@@ -134,12 +142,14 @@ impl Coherence {
             (false, true) => model.cache_to_cache,
             (false, false) => model.memory,
         };
-        let done = start.max(state.busy_until) + latency;
+        let done = start.max(after).max(state.busy_until) + latency;
         let alone = self.row(line).iter().all(|&bits| bits == 0);
         let entry = &mut self.lines[line as usize];
-        entry.busy_until = done;
         match access {
             Access::Write => {
+                // Whoever comes next waits until the new owner has the line. A copy to a reader holds
+                // nobody up: its source still has the data, and the bus is free again.
+                entry.busy_until = done;
                 entry.owner = p;
                 entry.dirty = true;
                 self.row(line).fill(0);

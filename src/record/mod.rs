@@ -25,7 +25,7 @@ pub use folder::RunFolder;
 pub use log::{RowLog, read_rows};
 pub use meta::{Host, Meta};
 pub use metric::{Better, METRICS, Metric, metric};
-pub use row::{CellKey, Row, settings_pairs};
+pub use row::{CellKey, Row, THREADS, settings_pairs};
 pub use whole::write_whole;
 
 use std::path::{Path, PathBuf};

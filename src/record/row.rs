@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// The machine that is real: OS threads. All others are simulated.
+pub const THREADS: &str = "threads";
+
 /// One number and all that is needed to read it: a tidy, long row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

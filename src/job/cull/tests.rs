@@ -44,7 +44,7 @@ fn every_scheme_and_machine_finds_the_serial_set_and_nothing_visible_is_lost() {
             assert!(serial.binary_search(&node).is_ok(), "frame {number}: visible node {node} was culled");
         }
         seen += serial.len();
-        for (name, _) in SCHEMES {
+        for name in SCHEMES.iter().map(|scheme| scheme.name) {
             for processors in [1, 2, 4] {
                 let shares = share(name, &threads, processors, &native.ranges()).unwrap();
                 assert_eq!(native.tree.visible(found(&shares)), serial, "{name} on {processors} threads");
@@ -53,7 +53,7 @@ fn every_scheme_and_machine_finds_the_serial_set_and_nothing_visible_is_lost() {
             }
             for processors in [1, 2, 7, 13] {
                 let Ok(shares) = share(name, &e4000, processors, &simulated.ranges()) else {
-                    assert!(["crossbeam_deque", "rayon_join"].contains(name));
+                    assert!(["crossbeam_deque", "rayon_join"].contains(&name));
                     continue;
                 };
                 assert_eq!(

@@ -28,6 +28,7 @@ use crate::sync::{Quiescence, Receiver, RingSettings, Sender, in_queue};
 use std::sync::atomic::Ordering;
 
 pub(super) const SUMMARY: &str = "rings between neighbours, sent blindly round robin (Paper II sec. 4)";
+pub(super) const NATIVE_ONLY: bool = false;
 
 pub(super) struct LockFree<M: Machine> {
     seats: Seats<Seat<M>>,

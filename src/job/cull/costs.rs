@@ -6,8 +6,8 @@ use crate::machine::simulated::Model;
 /// descent's time a frame to its nodes, planes tested and children, over the walk through
 /// `factory-large`, `-medium` and `-small`, plane-coherency and octant test on, warm caches, on one core
 /// of an AMD EPYC (Zen 3, 2.45 GHz nominal). `apportion machine calibrate` measures them anew.
-const NODE_NS: f64 = 4.5;
-const PLANE_NS: f64 = 2.6;
+const NODE_NS: f64 = 16.5;
+const PLANE_NS: f64 = 7.8;
 
 /// Cycles that a visit is charged on a simulated machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,1 +1,3 @@
 //! Jobs: work for a scheme, and the serial oracle each result is held against.
+
+pub mod synthetic;

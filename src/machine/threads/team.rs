@@ -79,7 +79,8 @@ impl Team {
         {
             core_affinity::set_for_current(core);
         }
-        let mut team = Team { common, threads: Vec::new(), running: AtomicBool::new(false), epoch: Mutex::new(0) };
+        let mut team =
+            Team { common, threads: Vec::new(), running: AtomicBool::new(false), epoch: Mutex::new(0) };
         for id in 1..processors {
             let (common, count) = (team.common.clone(), cores.len());
             let core = (count > 0).then(|| cores[id % count]);

@@ -21,6 +21,7 @@ use crate::machine::threads::TeamSettings;
 use crate::machine::{RunError, Simulated, Threads};
 use caches::caches;
 pub use gate::Gate;
+use programs::{Lines, lines};
 use std::fmt::Write as _;
 use std::time::Duration;
 
@@ -76,7 +77,7 @@ pub fn calibrate(progress: &mut dyn FnMut(&str)) -> Result<Calibration, Calibrat
     let (told, tell) = std::sync::mpsc::channel();
     // On a thread of its own, which stays pinned.
     std::thread::scope(|scope| {
-        let fitted = scope.spawn(move || fit(&|what| _ = told.send(what)));
+        let fitted = scope.spawn(move || fit(cores, &|what| _ = told.send(what)));
         tell.iter().for_each(|what| progress(what));
         fitted.join().unwrap_or_else(|payload| std::panic::resume_unwind(payload))
     })
@@ -95,14 +96,9 @@ const PROGRAMS: &[(&str, &str, Program<Threads>, Program<Simulated>)] = &[
     ("ring in cache", "l1_hit", programs::ring, programs::ring),
     ("fetch_add, own line", "atomic", programs::atomics, programs::atomics),
     ("store and fence, own line", "fence", programs::fences, programs::fences),
-    (
-        "lines read after the other",
-        "cache_to_cache",
-        |m| programs::lines(m, false),
-        |m| programs::lines(m, false),
-    ),
-    ("lines written, fenced", "upgrade", |m| programs::lines(m, true), |m| programs::lines(m, true)),
-    ("lines read, again", "cache_to_cache", |m| programs::lines(m, false), |m| programs::lines(m, false)),
+    ("lines both write", "cache_to_cache", |m| lines(m, Lines::BothWrite), |m| lines(m, Lines::BothWrite)),
+    ("lines one writes", "upgrade", |m| lines(m, Lines::WriteFenced), |m| lines(m, Lines::WriteFenced)),
+    ("lines one writes, unfenced", "store_misses", |m| lines(m, Lines::Write), |m| lines(m, Lines::Write)),
     ("ping-pong", "poll_pause", programs::ping_pong, programs::ping_pong),
     ("fetch_add, contended", "burst", programs::contended, programs::contended),
     ("a task through a stack", "task", programs::books, programs::books),
@@ -110,7 +106,7 @@ const PROGRAMS: &[(&str, &str, Program<Threads>, Program<Simulated>)] = &[
     ("run, empty", "start", programs::empty_run, programs::empty_run),
 ];
 
-fn fit(progress: &dyn Fn(&'static str)) -> Result<Calibration, CalibrateError> {
+fn fit(processors: usize, progress: &dyn Fn(&'static str)) -> Result<Calibration, CalibrateError> {
     let team = team()?;
     let mut gate = Gate::default();
     progress("clock and caches");
@@ -119,9 +115,9 @@ fn fit(progress: &dyn Fn(&'static str)) -> Result<Calibration, CalibrateError> {
     let cycles = |ns: f64| (ns / cycle_ns).round().max(1.0) as u64;
     let mut model = Model {
         name: "host".to_owned(),
-        description: describe(),
+        description: describe(processors),
         source: "fitted by apportion machine calibrate".to_owned(),
-        processors: Threads::cores(),
+        processors,
         clock_mhz: (1000.0 / cycle_ns).round(),
         line_bytes: caches::LINE,
         l1_lines: caches.l1_bytes / caches::LINE,
@@ -135,6 +131,7 @@ fn fit(progress: &dyn Fn(&'static str)) -> Result<Calibration, CalibrateError> {
         atomic: 0,
         fence: 0,
         store_buffer: 32,
+        store_misses: 1,
         poll_pause: 1,
         burst: 0,
         task: 0,
@@ -158,21 +155,22 @@ fn fit(progress: &dyn Fn(&'static str)) -> Result<Calibration, CalibrateError> {
 }
 
 /// Turns `constant` until `program` takes `target` cycles on the simulated machine, or as near as it
-/// gets: bisection, as every program takes the longer the greater its constant is, but for `burst`,
-/// where it is the other way round.
+/// gets: bisection, as every program takes the longer the greater its constant is, but for
+/// `burst` and `store_misses`, where it is the other way round.
 fn solve(
     model: &mut Model,
     constant: &str,
     target: f64,
     program: Program<Simulated>,
 ) -> Result<(), CalibrateError> {
-    let falls = constant == "burst";
+    let falls = matches!(constant, "burst" | "store_misses");
     let took = |value: u64, model: &mut Model| -> Result<f64, CalibrateError> {
         model.set(constant, value as f64)?;
         Ok(program(&Simulated::new(model.clone()))?)
     };
-    let least = u64::from(matches!(constant, "l1_hit" | "poll_pause"));
-    let (mut low, mut high) = (least, 20_000);
+    let least = u64::from(matches!(constant, "l1_hit" | "poll_pause" | "store_misses"));
+    let most = if constant == "store_misses" { model.store_buffer as u64 } else { 20_000 };
+    let (mut low, mut high) = (least, most);
     while low + 1 < high {
         let middle = low.midpoint(high);
         if (took(middle, model)? <= target) != falls {
@@ -188,7 +186,7 @@ fn solve(
 }
 
 /// The processor's name, how many there are, and the day.
-fn describe() -> String {
+fn describe(processors: usize) -> String {
     let known = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let field = |name: &str| {
         let line = known.lines().find(|line| line.split(':').next().is_some_and(|key| key.trim() == name))?;
@@ -201,7 +199,7 @@ fn describe() -> String {
     };
     let days = std::time::SystemTime::UNIX_EPOCH.elapsed().map_or(0, |age| age.as_secs() / 86_400);
     let (year, month, day) = date(days);
-    format!("{} processors, {name}{kind}, fitted {year}-{month:02}-{day:02}", Threads::cores())
+    format!("{processors} processors, {name}{kind}, fitted {year}-{month:02}-{day:02}")
 }
 
 /// Year, month and day of the Gregorian calendar, `days` after 1970-01-01 (Howard Hinnant's

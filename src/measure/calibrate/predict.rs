@@ -6,7 +6,7 @@ use super::{CalibrateError, team};
 use crate::job::synthetic::Synthetic;
 use crate::machine::simulated::Model;
 use crate::machine::{Machine, RunError, Simulated};
-use crate::scheme::tree::Scheme;
+use crate::scheme::tree::{Scheme, TreeWork};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -79,7 +79,7 @@ impl fmt::Display for Predictions {
 }
 
 /// Measures and predicts, with `repeats` interleaved repeats (15 or more for a result that counts) of
-/// `runs` runs back to back. The speedup of a repeat is its median serial run over its median run of
+/// `runs` runs back to back. The speedup of a repeat is its median serial run over its median run, of those between two quiet moments, of
 /// the scheme.
 ///
 /// # Errors
@@ -132,6 +132,26 @@ fn speedups(repeats: &[Vec<f64>], scheme: usize) -> Vec<f64> {
     repeats.iter().map(|times| times[0] / times[scheme]).collect()
 }
 
+/// Runs between two looks whether the host is quiet.
+const CHUNK: usize = 5;
+
+/// Whether two processors now work at the same time undisturbed: another program on one of them would
+/// tell of the scheduler, not of the scheme. A simulated machine always is.
+fn is_quiet<M: Machine>(machine: &M) -> Result<bool, RunError> {
+    const NS: u32 = 60_000;
+    if !machine.is_native() {
+        return Ok(true);
+    }
+    let work = Synthetic::new(machine, 1, NS..=NS, 1);
+    let before = machine.now();
+    machine.run(2, |cpu| {
+        let mut found = 0;
+        work.visit((0, 1), &mut found, cpu, |_| ());
+        std::hint::black_box(found)
+    })?;
+    Ok(machine.now() - before < u64::from(NS) * 6 / 5)
+}
+
 /// Median ticks of a run: for each repeat, for each scheme.
 fn measure<M: Machine>(
     machine: &M,
@@ -150,17 +170,22 @@ fn measure<M: Machine>(
         let mut medians = Vec::new();
         for scheme in &mut schemes {
             let mut times = Vec::new();
-            for run in 0..=runs {
-                let before = machine.now();
-                let shares = scheme.run(machine, &work)?;
-                let ticks = machine.now() - before;
-                debug_assert_eq!(shares.iter().fold(0, |sum, s| sum ^ s.found), work.expected());
-                // The first one warms up.
-                if run > 0 {
-                    times.push(ticks as f64);
+            let mut disturbed = Vec::new();
+            let mut quiet = is_quiet(machine)?;
+            // The first one warms up.
+            scheme.run(machine, &work)?;
+            while times.len() < runs && times.len() + disturbed.len() < 4 * runs {
+                let mut some = Vec::new();
+                for _ in 0..CHUNK {
+                    let before = machine.now();
+                    let shares = scheme.run(machine, &work)?;
+                    some.push((machine.now() - before) as f64);
+                    debug_assert_eq!(shares.iter().fold(0, |sum, s| sum ^ s.found), work.expected());
                 }
+                let was_quiet = std::mem::replace(&mut quiet, is_quiet(machine)?);
+                if was_quiet && quiet { &mut times } else { &mut disturbed }.append(&mut some);
             }
-            medians.push(median(&mut times));
+            medians.push(median(if times.is_empty() { &mut disturbed } else { &mut times }));
         }
         Ok(medians)
     };

@@ -146,16 +146,23 @@ impl Engine {
         } else if kind == Kind::Store && stores.len() >= self.model.store_buffer {
             clock = clock.max(stores.pop_front().unwrap_or(0));
         }
-        // Buffered stores go through one after the other; a load does not wait for them.
-        let after = if kind == Kind::Store { stores.back().copied().unwrap_or(0) } else { 0 };
+        // Buffered stores miss a few at a time (`store_misses`); a load does not wait for them.
+        let stores = &self.stores[p];
+        let after = match self.model.store_misses {
+            at_once if kind == Kind::Store && at_once > 0 && stores.len() >= at_once => {
+                stores[stores.len() - at_once]
+            }
+            _ => 0,
+        };
         let served = self.coherence.access(&self.model, (p as u16, line), access, clock, after);
         match kind {
             Kind::Load => clock = served.done,
             Kind::Atomic => clock = served.done + self.model.atomic,
             Kind::Store => {
                 let stores = &mut self.stores[p];
-                if !served.hit || after > clock {
-                    stores.push_back(served.done.max(after));
+                let before = stores.back().copied().unwrap_or(0);
+                if !served.hit || before > clock {
+                    stores.push_back(served.done.max(before));
                 }
                 clock += self.model.l1_hit;
             }
@@ -170,7 +177,8 @@ impl Engine {
         for (p, ticket) in self.watchers.remove(&line).unwrap_or_default() {
             if self.parked[p] && self.tickets[p] == ticket {
                 self.parked[p] = false;
-                self.clocks[p] = self.clocks[p].max(at);
+                // Whoever looks every `poll_pause` cycles sees a change half a pause late, on average.
+                self.clocks[p] = self.clocks[p].max(at + self.model.poll_pause / 2);
                 self.ready.push(Reverse(self.key(p)));
             }
         }
@@ -292,6 +300,17 @@ pub(super) fn spend(cycles: u64, work: bool) {
     e.clocks[e.current] += cycles;
     if work {
         e.statistics.charged[e.current] += cycles;
+    }
+}
+
+/// Spends what the bookkeeping of one task costs beyond its shared accesses.
+#[inline]
+pub(super) fn keep_books() {
+    let engine = CURRENT.get();
+    if !engine.is_null() {
+        // SAFETY: as in `bill`; nothing suspends here.
+        let e = unsafe { &mut *engine };
+        e.clocks[e.current] += e.model.task;
     }
 }
 

@@ -116,9 +116,11 @@ impl Simulated {
             let result = body();
             let others = cpu.count as u64 - 1;
             cpu.wait_until(&[finished], || finished.load(Ordering::Acquire) == others);
+            engine::spend(self.model.finish, false);
             result
         } else {
             cpu.wait_until(&[start], || start.load(Ordering::Acquire) == 1);
+            engine::spend(self.model.start, false);
             let result = body();
             finished.fetch_add(1, Ordering::Release);
             result
@@ -150,6 +152,10 @@ impl Processor for VirtualProcessor {
 
     fn touch<T>(&self, data: &T) {
         engine::touch(std::ptr::from_ref(data).addr(), size_of::<T>());
+    }
+
+    fn keep_books(&self) {
+        engine::keep_books();
     }
 
     fn spin(&self) {
@@ -273,7 +279,7 @@ impl Machine for Simulated {
 
     fn start_ticks(&self, processors: usize) -> u64 {
         // Each processor's copy of the start word, and its turn at the finishing count.
-        processors as u64 * 2 * self.model.cache_to_cache
+        processors as u64 * 2 * self.model.cache_to_cache + self.model.start + self.model.finish
     }
 
     fn now(&self) -> u64 {

@@ -37,6 +37,7 @@ mod work_stealing;
 use super::{SettingError, Settings};
 use crate::machine::{Machine, RunError};
 use std::collections::BTreeMap;
+use work::Billed;
 pub use work::{Share, Task, TreeWork, work};
 
 /// A scheme in the list of schemes.
@@ -133,7 +134,7 @@ impl<M: Machine> Scheme<M> {
                 .expect("these settings have been used before");
         }
         self.spoilt = true;
-        let shares = self.scheme.run(machine, work)?;
+        let shares = self.scheme.run(machine, &Billed(work))?;
         self.spoilt = false;
         Ok(shares)
     }

@@ -5,12 +5,14 @@
 //! for each scheme `tasks` (`ranges`, `nodes`).
 
 use super::settings::{JobSettings, of_scheme};
-use super::{Cell, MeasureError, Options, Sample, Stage, Subject, SubjectCache, failed, simulated};
+use super::{
+    Cell, MeasureError, Options, Sample, Stage, Subject, SubjectCache, failed, load_imbalance, simulated,
+};
 use crate::geometry::{Frustum, culling};
-use crate::job::cull::{Costs, CullTree, Descent, Frame, History, Tests, Visible};
+use crate::job::cull::{Costs, CullTree, Descent, Frame, History, Tests};
 use crate::machine::{Machine, Simulated, Threads};
 use crate::record::THREADS;
-use crate::scheme::tree::{Scheme, Share};
+use crate::scheme::tree::Scheme;
 use std::borrow::Borrow;
 use std::rc::Rc;
 use std::time::Duration;
@@ -145,7 +147,7 @@ impl<H: Borrow<M>, M: Machine> Subject for CullSubject<H, M> {
             }
             visible += found.len();
             visited += shares.iter().map(|share| share.visited).sum::<u64>();
-            imbalance += load_imbalance(&shares);
+            imbalance += load_imbalance(shares.iter().map(|share| share.visited));
         }
         let frames = self.stage.cameras.len() as f64;
         samples.push(Sample::of_path("nodes_visited", visited as f64 / frames));
@@ -153,11 +155,4 @@ impl<H: Borrow<M>, M: Machine> Subject for CullSubject<H, M> {
         samples.push(Sample::of_path("load_imbalance", imbalance / frames));
         Ok(samples)
     }
-}
-
-/// How much more than the mean the busiest processor visited, per cent of the mean.
-fn load_imbalance(shares: &[Share<Visible>]) -> f64 {
-    let total: u64 = shares.iter().map(|share| share.visited).sum();
-    let most = shares.iter().map(|share| share.visited).max().unwrap_or(0);
-    if total == 0 { 0.0 } else { 100.0 * (most as f64 * shares.len() as f64 / total as f64 - 1.0) }
 }

@@ -2,6 +2,7 @@
 
 mod cull;
 mod settings;
+mod tree;
 
 use super::{Cell, MeasureError, Options};
 use crate::geometry::Camera;
@@ -64,7 +65,7 @@ pub struct Known {
 
 /// The jobs, by word: how each is made ready. The list is the table of contents.
 type OpenJob = fn(&Cell, &Options, &mut SubjectCache) -> Result<Box<dyn Subject>, MeasureError>;
-const JOBS: &[(&str, OpenJob)] = &[("cull", cull::open)];
+const JOBS: &[(&str, OpenJob)] = &[("cull", cull::open), ("tree", tree::open)];
 
 impl Known {
     /// All that this version knows.
@@ -166,6 +167,13 @@ fn simulated(cell: &Cell) -> Result<Simulated, MeasureError> {
         model.set(constant, number).map_err(|error| MeasureError::Words(error.to_string()))?;
     }
     Ok(Simulated::new(model))
+}
+
+/// How much more than the mean the busiest processor visited, per cent of the mean.
+fn load_imbalance(visited: impl ExactSizeIterator<Item = u64> + Clone) -> f64 {
+    let processors = visited.len() as f64;
+    let (total, most) = (visited.clone().sum::<u64>(), visited.max().unwrap_or(0));
+    if total == 0 { 0.0 } else { 100.0 * (most as f64 * processors / total as f64 - 1.0) }
 }
 
 fn failed(error: impl Display) -> MeasureError {

@@ -49,6 +49,21 @@ impl JobSettings {
         })
     }
 
+    /// A range of whole numbers, written `LEAST-MOST`.
+    pub(super) fn range(
+        &self,
+        key: &'static str,
+        default: std::ops::RangeInclusive<u32>,
+    ) -> Result<std::ops::RangeInclusive<u32>, MeasureError> {
+        self.known.borrow_mut().push(key);
+        let Some(value) = self.values.get(key) else { return Ok(default) };
+        let ends =
+            value.split_once('-').and_then(|(least, most)| Some((least.parse().ok()?, most.parse().ok()?)));
+        ends.filter(|(least, most)| least <= most).map(|(least, most)| least..=most).ok_or_else(|| {
+            MeasureError::Words(format!("setting `{key}` is `{value}`, expected LEAST-MOST, such as 100-300"))
+        })
+    }
+
     /// Refuses settings that nobody asked for.
     pub(super) fn finish(&self, cell: &Cell) -> Result<(), MeasureError> {
         let known = self.known.borrow();

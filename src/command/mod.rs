@@ -10,6 +10,7 @@ mod words;
 use anyhow::Result;
 use apportion::measure::{MeasureError, inspect};
 use clap::{CommandFactory, Parser};
+use std::io::IsTerminal;
 use std::process::ExitCode;
 use words::{Action, Words};
 
@@ -35,9 +36,16 @@ fn act(action: Action) -> Result<ExitCode> {
         Action::Run(words) => return run::run(&words),
         Action::Table(words) => table::table(&words)?,
         Action::Scene { scene } => print::line(&inspect::scene(&scene)?)?,
-        Action::Machine { machine } => print::line(&inspect::machine(machine.as_deref())?)?,
+        Action::Machine { machine } => {
+            let mut tell = |what: &str| {
+                if std::io::stderr().is_terminal() {
+                    eprintln!("measuring: {what}");
+                }
+            };
+            print::line(&inspect::machine(machine.as_deref(), &mut tell)?)?;
+        }
         Action::Stress { what, processors, seconds } => {
-            print::line(&inspect::stress(&what, processors, seconds)?)?;
+            anyhow::bail!("stress {what} {processors} {seconds}: not merged yet");
         }
         Action::Completions { shell } => {
             let mut text = Vec::new();

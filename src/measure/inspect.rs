@@ -23,7 +23,13 @@ pub fn scene(name: &str) -> Result<String, MeasureError> {
         writeln!(text, "{what:22} {value}").expect("a string takes all");
     };
     line("scene", holds.name);
-    line("graph", format!("{} nodes, depth {}, widest fan-out {}, mean {:.1}", holds.nodes, holds.depth, holds.widest_fan_out, holds.mean_fan_out));
+    line(
+        "graph",
+        format!(
+            "{} nodes, depth {}, widest fan-out {}, mean {:.1}",
+            holds.nodes, holds.depth, holds.widest_fan_out, holds.mean_fan_out
+        ),
+    );
     line("nodes by depth", numbers(&holds.depths));
     line("meshes", format!("{}, {} triangles", holds.meshes, holds.unique_triangles));
     line("placed", format!("{} times, {} triangles", holds.instances, holds.instanced_triangles));

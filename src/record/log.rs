@@ -67,11 +67,6 @@ impl RowLog {
     pub fn is_finished(&self, key: &CellKey) -> bool {
         self.finished.contains(key)
     }
-
-    /// Where the log is.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
 }
 
 /// Reads the whole rows of a log that someone else may still be writing; touches nothing.

@@ -140,6 +140,7 @@ impl<'a> Drawing<'a> {
         let (first, last) = (x(1.0), x(self.most_processors.into()));
         let end = last + if peaks { 1.5 } else { 0.5 } * step;
         let mut chart = ChartBuilder::on(area)
+            .margin_left(14)
             .margin_right(16)
             .margin_bottom(10)
             .x_label_area_size(52)

@@ -59,7 +59,7 @@ impl Look {
     pub(crate) fn marker<C, B: DrawingBackend>(self, at: C, hollow: bool) -> Marker<C, B> {
         let corner = |number: u32| {
             let angle = TAU * (f64::from(number) / f64::from(self.shape.corners) + self.shape.turn);
-            let radius = if number % 2 == 0 { RADIUS } else { RADIUS * self.shape.waist };
+            let radius = if number.is_multiple_of(2) { RADIUS } else { RADIUS * self.shape.waist };
             ((radius * angle.cos()).round() as i32, (radius * angle.sin()).round() as i32)
         };
         let outline: Vec<(i32, i32)> = (0..=self.shape.corners).map(corner).collect();

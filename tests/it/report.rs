@@ -7,10 +7,14 @@ use apportion::report::{speedup_charts, table};
 use std::sync::atomic::AtomicBool;
 
 fn rows() -> Vec<Row> {
+    rows_of(&Selection::default())
+}
+
+fn rows_of(selection: &Selection) -> Vec<Row> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("rows.jsonl");
     let (mut log, kept) = RowLog::open(&path).expect("it opens");
-    let plan = mock::plan(&Selection { frames: Some(2), ..Selection::default() });
+    let plan = mock::plan(&Selection { frames: Some(2), ..selection.clone() });
     let stop = AtomicBool::new(false);
     run(&plan, "id", (&mut log, &kept), &mut mock::open, &mut |_| {}, &stop).expect("it runs");
     read_rows(&path).expect("the log is whole")
@@ -91,4 +95,27 @@ fn a_chart_a_machine_with_a_curve_a_scheme() {
     // The same rows give the same drawing, byte by byte.
     let again = speedup_charts(&experiment.title, &rows(), &experiment.paper).expect("they can be drawn");
     assert_eq!(svg, &again[0].svg);
+}
+
+#[test]
+fn many_processors_stand_on_powers_of_two() {
+    let selection = Selection {
+        machines: vec!["e4000".to_owned()],
+        processors: Some("1,2,8,64,1024".to_owned()),
+        schemes: vec!["ring".to_owned()],
+        ..Selection::default()
+    };
+    let charts = speedup_charts("Many", &rows_of(&selection), &[]).expect("they can be drawn");
+    if let Some(folder) = std::env::var_os("CHARTS_TO_LOOK_AT") {
+        std::fs::write(std::path::Path::new(&folder).join("many.svg"), &charts[0].svg)
+            .expect("it is written");
+    }
+    let labels: Vec<&str> = charts[0].svg.lines().map(str::trim).collect();
+    for count in ["1", "2", "64", "1024"] {
+        assert!(labels.contains(&count), "no {count} on the axis");
+    }
+    // The one parallel scheme has two settings: these are then the question, a curve each.
+    for curve in ["ring receivers=1", "ring receivers=2"] {
+        assert!(labels.contains(&curve), "no {curve} in the legend");
+    }
 }

@@ -5,7 +5,9 @@ use apportion::measure::{Ending, MeasureError, Selection, Subject, run};
 use apportion::record::{Row, RowLog, read_rows};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 fn run_mock(path: &Path, stop_after: usize) -> Result<Ending, MeasureError> {
     let (mut log, kept) = RowLog::open(path)?;
@@ -96,6 +98,46 @@ fn a_stopped_run_is_taken_up_without_a_difference() {
         let ending = run_mock(&parts, stop_after).expect("it runs");
         assert!(matches!(ending, Ending::Stopped { left } if left > 0), "{ending:?}");
     }
+    assert_eq!(run_mock(&parts, usize::MAX).expect("it runs"), Ending::Complete);
+    let [whole, parts] =
+        [whole, parts].map(|path| without_noise(read_rows(&path).expect("the log is whole")));
+    assert_eq!(whole, parts);
+}
+
+/// Runs the mock plan, slowly enough to be killed in the middle.
+#[test]
+#[ignore = "the child of another test"]
+fn child_runs() {
+    let Some(path) = std::env::var_os("LOG_OF_CHILD") else { return };
+    let (mut log, kept) = RowLog::open(Path::new(&path)).expect("it opens");
+    let plan = mock::plan(&Selection::default());
+    let stop = AtomicBool::new(false);
+    let mut watch = |_: apportion::measure::Progress<'_>| std::thread::sleep(Duration::from_millis(2));
+    run(&plan, "id", (&mut log, &kept), &mut mock::open, &mut watch, &stop).expect("it runs");
+}
+
+#[test]
+fn a_killed_run_is_taken_up_without_a_difference() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (whole, parts) = (folder.path().join("whole.jsonl"), folder.path().join("parts.jsonl"));
+    run_mock(&whole, usize::MAX).expect("it runs");
+    let program = std::env::current_exe().expect("a test has a program");
+    let length = || std::fs::metadata(&parts).map_or(0, |file| file.len());
+    for _ in 0..4 {
+        let mut command = Command::new(&program);
+        command.args(["--exact", "run::child_runs", "--ignored"]).env("LOG_OF_CHILD", &parts);
+        let mut child = command.stdout(Stdio::null()).spawn().expect("the child starts");
+        // Killed once it has written something, however slow the computer is.
+        let before = length();
+        while length() < before + 2_000 {
+            assert!(child.try_wait().expect("it can be asked").is_none(), "it ended before it was killed");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        child.kill().expect("it can be killed");
+        child.wait().expect("it ends");
+    }
+    let kept = read_rows(&parts).expect("the log is whole").len();
+    assert!(kept > 0 && kept < read_rows(&whole).expect("the log is whole").len());
     assert_eq!(run_mock(&parts, usize::MAX).expect("it runs"), Ending::Complete);
     let [whole, parts] =
         [whole, parts].map(|path| without_noise(read_rows(&path).expect("the log is whole")));

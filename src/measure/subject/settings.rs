@@ -84,8 +84,10 @@ fn part<'a>(cell: &'a Cell, prefix: &str) -> impl Iterator<Item = (String, Strin
         .filter_map(move |(key, value)| Some((key.strip_prefix(&prefix)?.to_owned(), value.to_string())))
 }
 
-/// The settings of a cell's scheme, by their bare names: `scheme.*` for all, its own name's over them.
+/// The settings of a cell's scheme, by their bare names: `scheme.*` for all that share (the serial one has
+/// nothing to set there), its own name's over them.
 pub(super) fn of_scheme(cell: &Cell) -> BTreeMap<String, String> {
-    let own = part(cell, "scheme.").chain(part(cell, &format!("{}.", cell.scheme)));
+    let shared = part(cell, "scheme.").filter(|_| cell.scheme != "serial");
+    let own = shared.chain(part(cell, &format!("{}.", cell.scheme)));
     own.filter(|(key, _)| !OF_THE_JOB.contains(&key.as_str())).collect()
 }

@@ -146,14 +146,7 @@ impl Engine {
         } else if kind == Kind::Store && stores.len() >= self.model.store_buffer {
             clock = clock.max(stores.pop_front().unwrap_or(0));
         }
-        let stores = &self.stores[p];
-        let asks = match self.model.store_misses {
-            at_once if kind == Kind::Store && at_once > 0 && stores.len() >= at_once => {
-                clock.max(stores[stores.len() - at_once])
-            }
-            _ => clock,
-        };
-        let served = self.coherence.access(&self.model, p as u16, line, access, asks);
+        let served = self.coherence.access(&self.model, p as u16, line, access, clock);
         match kind {
             Kind::Load => clock = served.done,
             Kind::Atomic => clock = served.done + self.model.atomic,

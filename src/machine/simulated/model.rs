@@ -41,10 +41,6 @@ pub struct Model {
     pub fence: u64,
     /// Depth of the store buffer (in order, as on a total-store-order machine).
     pub store_buffer: usize,
-    /// How many misses of buffered stores are under way at once; 0 for as many as the buffer holds. With
-    /// 1, a store asks for its line only when the one before is done.
-    #[serde(default)]
-    pub store_misses: usize,
     /// Cycles between two looks of a busy wait.
     pub poll_pause: u64,
     /// Cycles for which a processor keeps using a line it has written after another has asked for it,

@@ -108,7 +108,7 @@ const PROGRAMS: &[(&str, &str, Program<Threads>, Program<Simulated>)] = &[
 
 fn fit(processors: usize, progress: &dyn Fn(&'static str)) -> Result<Calibration, CalibrateError> {
     let team = team()?;
-    let mut gate = Gate::default();
+    let mut gate = Gate::now(&team)?;
     progress("clock and caches");
     let cycle_ns = gate.median(&team, SAMPLES, |_| Ok(caches::addition()))?;
     let caches = caches();
@@ -218,11 +218,11 @@ impl Calibration {
         let mut text =
             String::from("# Fitted by `apportion machine calibrate`; times are cycles of the clock.\n");
         let (near, far) = self.gate.spread();
-        let Gate { kept, discarded, .. } = self.gate;
+        let Gate { kept, discarded, ping, .. } = self.gate;
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "# {kept} samples, {discarded} discarded; pings {near:.0} to {far:.0} ns one way."
+            "# {kept} samples, {discarded} discarded; cores {ping:.0} ns apart ({near:.0} to {far:.0})."
         );
         text + &toml::to_string(&self.model).expect("a model is a table")
     }

@@ -163,7 +163,7 @@ fn shape(nodes: u32, seed: u64) -> Vec<u32> {
         ends[first as usize] = end;
         let below = end - first - 1;
         state = mix(state);
-        let links = if links == 0 && state % 4 == 0 { draw(state >> 8, &(2..=7)) } else { links };
+        let links = if links == 0 && state.is_multiple_of(4) { draw(state >> 8, &(2..=7)) } else { links };
         if links > 0 {
             open.push((first + 1, end, links - 1));
             continue;
@@ -201,7 +201,7 @@ fn mix(number: u64) -> u64 {
 /// A number of `range` that depends on `hash` alone.
 fn draw(hash: u64, range: &RangeInclusive<u32>) -> u32 {
     let span = u64::from(range.end().saturating_sub(*range.start())) + 1;
-    range.start() + ((hash >> 32) * span >> 32) as u32
+    range.start() + (((hash >> 32) * span) >> 32) as u32
 }
 
 /// Turns a loop of dependent arithmetic, a few cycles a turn.

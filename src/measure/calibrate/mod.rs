@@ -78,7 +78,7 @@ pub fn calibrate(progress: &mut dyn FnMut(&str)) -> Result<Calibration, Calibrat
     // On a thread of its own, which stays pinned.
     std::thread::scope(|scope| {
         let fitted = scope.spawn(move || fit(cores, &|what| _ = told.send(what)));
-        tell.iter().for_each(|what| progress(what));
+        tell.iter().for_each(progress);
         fitted.join().unwrap_or_else(|payload| std::panic::resume_unwind(payload))
     })
 }

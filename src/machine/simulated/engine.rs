@@ -339,8 +339,8 @@ pub(super) fn wait_until(addresses: impl Iterator<Item = usize> + Clone, mut rea
         if ready() {
             return;
         }
-        // SAFETY: the borrow ends before the suspension.
         let yielder = {
+            // SAFETY: the borrow ends before the suspension.
             let e = unsafe { &mut *engine };
             let missed = addresses
                 .clone()

@@ -210,11 +210,11 @@ fn work(common: &Common, id: usize) {
             || {
                 std::hint::spin_loop();
                 turns += 1;
-                if turns % common.patience == 0 {
+                if turns.is_multiple_of(common.patience) {
                     std::thread::yield_now();
                 }
                 // Reading the clock costs tens of nanoseconds, so only now and then.
-                turns % 64 != 0 || since.get_or_insert_with(now).elapsed() < common.spin
+                !turns.is_multiple_of(64) || since.get_or_insert_with(now).elapsed() < common.spin
             },
             std::thread::park,
         );

@@ -7,6 +7,10 @@ use std::time::Duration;
 /// Bytes between the elements of a chase: a coherence line of every host so far.
 pub(super) const LINE: usize = 64;
 
+/// Bytes of a block beyond the second level, yet no more than a scheme's queues and trees may take: what
+/// serves its misses is the third level, where there is one.
+const BEYOND: usize = 4 << 20;
+
 #[expect(clippy::disallowed_methods, reason = "micro-benchmarks take native time")]
 fn time(body: impl FnOnce()) -> Duration {
     let before = std::time::Instant::now();
@@ -106,7 +110,7 @@ pub(super) fn caches() -> Caches {
     };
     let sizes: Vec<usize> = (13..=22).map(|bits| 1 << bits).collect();
     let latencies: Vec<f64> = sizes.iter().map(|&bytes| best(bytes, 1)).collect();
-    let beyond = best(8 << 20, 1);
+    let beyond = best(BEYOND, 1);
     let largest_below = |limit: f64| {
         let fits = latencies.iter().take_while(|&&latency| latency < limit).count();
         sizes[fits.max(1) - 1]
@@ -115,7 +119,7 @@ pub(super) fn caches() -> Caches {
     // Four times the first level lies well within the second.
     let l2 = best(4 * l1_bytes, 1);
     let l2_bytes = largest_below(0.5 * (l2 + beyond)).max(4 * l1_bytes);
-    Caches { l1_bytes, l2_bytes, l2, beyond, apart: best(8 << 20, 8) }
+    Caches { l1_bytes, l2_bytes, l2, beyond, apart: best(BEYOND, 8) }
 }
 
 #[cfg(test)]

@@ -1,15 +1,19 @@
 //! Samples that count: on a virtual machine cores drift between near and far, and other guests take
-//! their time. Each sample is put between two pings; it counts if both took about as long.
+//! their time. Each sample is put between two pings; it counts if both took about as long as at the
+//! beginning. On a shared host the difference is not small: two virtual cores may be threads of one core
+//! now (15 ns) and cores apart a minute later (220 ns). A fit holds for the distance it was made at.
 
 use super::programs;
 use crate::machine::{RunError, Threads};
 
-/// How much longer than the other a ping may take.
-const TOLERANCE: f64 = 1.2;
+/// How much longer or shorter than the first ones a ping may take.
+const TOLERANCE: f64 = 1.5;
 
 /// What the gate let through.
 #[derive(Clone, Debug, Default)]
 pub struct Gate {
+    /// What a ping takes, nanoseconds one way, at the distance that counts.
+    pub ping: f64,
     /// Samples that counted.
     pub kept: usize,
     /// Samples between two pings that differed.
@@ -19,6 +23,22 @@ pub struct Gate {
 }
 
 impl Gate {
+    /// A gate for the distance at which the cores are now.
+    pub(super) fn now(team: &Threads) -> Result<Self, RunError> {
+        let mut pings = (0..101).map(|_| programs::ping_pong(team)).collect::<Result<Vec<_>, _>>()?;
+        Ok(Gate::at(median(&mut pings)))
+    }
+
+    /// A gate for a given distance, nanoseconds one way.
+    pub(super) fn at(ping: f64) -> Self {
+        Gate { ping, ..Gate::default() }
+    }
+
+    /// Whether a ping tells of the distance that counts.
+    pub(super) fn lets(&self, ping: f64) -> bool {
+        ping < TOLERANCE * self.ping && self.ping < TOLERANCE * ping
+    }
+
     /// The median of `wanted` samples of `sample` that count; of all, if there are too few within four
     /// times as many tries.
     pub(super) fn median(
@@ -36,7 +56,7 @@ impl Gate {
             let after = programs::ping_pong(team)?;
             self.pings.extend([before, after]);
             all.push(value);
-            if before < TOLERANCE * after && after < TOLERANCE * before {
+            if self.lets(before) && self.lets(after) {
                 kept.push(value);
                 self.kept += 1;
             } else {

@@ -21,7 +21,7 @@ use crate::machine::threads::TeamSettings;
 use crate::machine::{RunError, Simulated, Threads};
 use caches::caches;
 pub use gate::Gate;
-use programs::{Lines, lines};
+use programs::lines;
 use std::fmt::Write as _;
 use std::time::Duration;
 
@@ -78,7 +78,7 @@ pub fn calibrate(progress: &mut dyn FnMut(&str)) -> Result<Calibration, Calibrat
     // On a thread of its own, which stays pinned.
     std::thread::scope(|scope| {
         let fitted = scope.spawn(move || fit(cores, &|what| _ = told.send(what)));
-        tell.iter().for_each(|what| progress(what));
+        tell.iter().for_each(progress);
         fitted.join().unwrap_or_else(|payload| std::panic::resume_unwind(payload))
     })
 }
@@ -96,9 +96,9 @@ const PROGRAMS: &[(&str, &str, Program<Threads>, Program<Simulated>)] = &[
     ("ring in cache", "l1_hit", programs::ring, programs::ring),
     ("fetch_add, own line", "atomic", programs::atomics, programs::atomics),
     ("store and fence, own line", "fence", programs::fences, programs::fences),
-    ("lines both write", "cache_to_cache", |m| lines(m, Lines::BothWrite), |m| lines(m, Lines::BothWrite)),
-    ("lines one writes", "upgrade", |m| lines(m, Lines::WriteFenced), |m| lines(m, Lines::WriteFenced)),
-    ("lines one writes, unfenced", "store_misses", |m| lines(m, Lines::Write), |m| lines(m, Lines::Write)),
+    ("lines read after the other", "cache_to_cache", |m| lines(m, false), |m| lines(m, false)),
+    ("lines written, fenced", "upgrade", |m| lines(m, true), |m| lines(m, true)),
+    ("lines read, again", "cache_to_cache", |m| lines(m, false), |m| lines(m, false)),
     ("ping-pong", "poll_pause", programs::ping_pong, programs::ping_pong),
     ("fetch_add, contended", "burst", programs::contended, programs::contended),
     ("a task through a stack", "task", programs::books, programs::books),
@@ -108,7 +108,7 @@ const PROGRAMS: &[(&str, &str, Program<Threads>, Program<Simulated>)] = &[
 
 fn fit(processors: usize, progress: &dyn Fn(&'static str)) -> Result<Calibration, CalibrateError> {
     let team = team()?;
-    let mut gate = Gate::default();
+    let mut gate = Gate::now(&team)?;
     progress("clock and caches");
     let cycle_ns = gate.median(&team, SAMPLES, |_| Ok(caches::addition()))?;
     let caches = caches();
@@ -131,7 +131,7 @@ fn fit(processors: usize, progress: &dyn Fn(&'static str)) -> Result<Calibration
         atomic: 0,
         fence: 0,
         store_buffer: 32,
-        store_misses: 1,
+        store_misses: 0,
         poll_pause: 1,
         burst: 0,
         task: 0,
@@ -156,21 +156,20 @@ fn fit(processors: usize, progress: &dyn Fn(&'static str)) -> Result<Calibration
 
 /// Turns `constant` until `program` takes `target` cycles on the simulated machine, or as near as it
 /// gets: bisection, as every program takes the longer the greater its constant is, but for
-/// `burst` and `store_misses`, where it is the other way round.
+/// `burst`, where it is the other way round.
 fn solve(
     model: &mut Model,
     constant: &str,
     target: f64,
     program: Program<Simulated>,
 ) -> Result<(), CalibrateError> {
-    let falls = matches!(constant, "burst" | "store_misses");
+    let falls = constant == "burst";
     let took = |value: u64, model: &mut Model| -> Result<f64, CalibrateError> {
         model.set(constant, value as f64)?;
         Ok(program(&Simulated::new(model.clone()))?)
     };
-    let least = u64::from(matches!(constant, "l1_hit" | "poll_pause" | "store_misses"));
-    let most = if constant == "store_misses" { model.store_buffer as u64 } else { 20_000 };
-    let (mut low, mut high) = (least, most);
+    let least = u64::from(matches!(constant, "l1_hit" | "poll_pause"));
+    let (mut low, mut high) = (least, 20_000);
     while low + 1 < high {
         let middle = low.midpoint(high);
         if (took(middle, model)? <= target) != falls {
@@ -220,11 +219,11 @@ impl Calibration {
         let mut text =
             String::from("# Fitted by `apportion machine calibrate`; times are cycles of the clock.\n");
         let (near, far) = self.gate.spread();
-        let Gate { kept, discarded, .. } = self.gate;
+        let Gate { kept, discarded, ping, .. } = self.gate;
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "# {kept} samples, {discarded} discarded; pings {near:.0} to {far:.0} ns one way."
+            "# {kept} samples, {discarded} discarded; cores {ping:.0} ns apart ({near:.0} to {far:.0})."
         );
         text + &toml::to_string(&self.model).expect("a model is a table")
     }

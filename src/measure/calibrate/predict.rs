@@ -1,8 +1,8 @@
 //! Holds predictions of the simulated machine against this host: the speedup of whole schemes on two
 //! processors, on synthetic trees, none of which took part in the fit.
 
-use super::gate::median;
-use super::{CalibrateError, team};
+use super::gate::{Gate, median};
+use super::{CalibrateError, programs, team};
 use crate::job::synthetic::Synthetic;
 use crate::machine::simulated::Model;
 use crate::machine::{Machine, RunError, Simulated};
@@ -104,15 +104,21 @@ fn compare(
     progress: &mut dyn FnMut(&str),
 ) -> Result<Predictions, CalibrateError> {
     let team = team()?;
+    let cycles = programs::ping_pong(&Simulated::new(model.clone()))?;
+    let gate = Gate::at(1000.0 * cycles / model.clock_mhz);
     let mut all = Vec::new();
     for &nodes in NODES {
         for &work_ns in WORK {
             progress(&format!("{nodes} nodes of {} to {} ns", work_ns.0, work_ns.1));
-            let measured = measure(&team, nodes, work_ns, repeats, runs)?;
+            let measured = measure(&team, nodes, work_ns, repeats, runs, &gate)?;
             let simulated = Simulated::new(model.clone());
-            let predicted = measure(&simulated, nodes, work_ns, 1, 5)?;
+            let predicted = measure(&simulated, nodes, work_ns, 1, 5, &gate)?;
             for (i, scheme) in SCHEMES.iter().enumerate().skip(1) {
                 let mut speedups = speedups(&measured, i);
+                if speedups.is_empty() {
+                    progress(&format!("{scheme}: the host was never quiet at the fitted distance"));
+                    continue;
+                }
                 let middle = median(&mut speedups);
                 let quartile = |share: usize| speedups[(speedups.len() - 1) * share / 4];
                 all.push(Prediction {
@@ -129,18 +135,22 @@ fn compare(
 }
 
 fn speedups(repeats: &[Vec<f64>], scheme: usize) -> Vec<f64> {
-    repeats.iter().map(|times| times[0] / times[scheme]).collect()
+    repeats.iter().map(|times| times[0] / times[scheme]).filter(|speedup| !speedup.is_nan()).collect()
 }
 
-/// Runs between two looks whether the host is quiet.
+/// Most runs between two looks whether the host is quiet, and ticks after which to look.
 const CHUNK: usize = 5;
+const CHUNK_TICKS: u64 = 500_000;
 
-/// Whether two processors now work at the same time undisturbed: another program on one of them would
-/// tell of the scheduler, not of the scheme. A simulated machine always is.
-fn is_quiet<M: Machine>(machine: &M) -> Result<bool, RunError> {
+/// Whether two processors now work at the same time undisturbed, at the distance the model was fitted
+/// for: another program on one of them would tell of the scheduler, not of the scheme. A simulated machine always is.
+fn is_quiet<M: Machine>(machine: &M, gate: &Gate) -> Result<bool, RunError> {
     const NS: u32 = 60_000;
     if !machine.is_native() {
         return Ok(true);
+    }
+    if !gate.lets(programs::ping_pong(machine)?) {
+        return Ok(false);
     }
     let work = Synthetic::new(machine, 1, NS..=NS, 1);
     let before = machine.now();
@@ -159,6 +169,7 @@ fn measure<M: Machine>(
     work_ns: (u32, u32),
     repeats: usize,
     runs: usize,
+    gate: &Gate,
 ) -> Result<Vec<Vec<f64>>, CalibrateError> {
     let work = Synthetic::new(machine, nodes, work_ns.0..=work_ns.1, 1);
     let mut schemes = Vec::new();
@@ -170,22 +181,28 @@ fn measure<M: Machine>(
         let mut medians = Vec::new();
         for scheme in &mut schemes {
             let mut times = Vec::new();
-            let mut disturbed = Vec::new();
-            let mut quiet = is_quiet(machine)?;
+            let mut disturbed = 0;
+            let mut quiet = is_quiet(machine, gate)?;
             // The first one warms up.
             scheme.run(machine, &work)?;
-            while times.len() < runs && times.len() + disturbed.len() < 4 * runs {
+            while times.len() < runs && times.len() + disturbed < 4 * runs {
                 let mut some = Vec::new();
-                for _ in 0..CHUNK {
+                let started = machine.now();
+                while some.is_empty() || (some.len() < CHUNK && machine.now() - started < CHUNK_TICKS) {
                     let before = machine.now();
                     let shares = scheme.run(machine, &work)?;
                     some.push((machine.now() - before) as f64);
                     debug_assert_eq!(shares.iter().fold(0, |sum, s| sum ^ s.found), work.expected());
                 }
-                let was_quiet = std::mem::replace(&mut quiet, is_quiet(machine)?);
-                if was_quiet && quiet { &mut times } else { &mut disturbed }.append(&mut some);
+                let was_quiet = std::mem::replace(&mut quiet, is_quiet(machine, gate)?);
+                if was_quiet && quiet {
+                    times.append(&mut some);
+                } else {
+                    disturbed += some.len();
+                }
             }
-            medians.push(median(if times.is_empty() { &mut disturbed } else { &mut times }));
+            // Never quiet: there is no result.
+            medians.push(if times.is_empty() { f64::NAN } else { median(&mut times) });
         }
         Ok(medians)
     };

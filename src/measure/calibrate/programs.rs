@@ -74,20 +74,9 @@ pub(super) fn ping_pong<M: Machine>(machine: &M) -> Result<f64, RunError> {
     Ok(ticks(machine, || machine.run(2, body).map(drop))? / TURNS as f64)
 }
 
-/// What the two processors do with lines they hand to and fro.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Lines {
-    /// Both write each line, with a fence after each: the line itself moves.
-    BothWrite,
-    /// Processor 0 writes, a fence after each; processor 1 reads, each after the one before.
-    WriteFenced,
-    /// The same without fences, so that writes wait in the store buffer.
-    Write,
-}
-
-/// Processor 0 writes some lines, then processor 1 writes or reads them, and so on. Ticks a line, there
-/// and back.
-pub(super) fn lines<M: Machine>(machine: &M, how: Lines) -> Result<f64, RunError> {
+/// Processor 0 writes some lines, processor 1 reads each after the one before, and so on. With
+/// `fenced`, a full fence follows each write. Ticks a line, there and back.
+pub(super) fn lines<M: Machine>(machine: &M, fenced: bool) -> Result<f64, RunError> {
     const ROUNDS: u64 = 20;
     let data = machine.alloc(LINES, Layout::Padded, |_| M::Word::new(0));
     let turn = &word(machine)[0];
@@ -100,13 +89,13 @@ pub(super) fn lines<M: Machine>(machine: &M, how: Lines) -> Result<f64, RunError
             for _ in 0..LINES {
                 // An odd step, so that no prefetcher helps.
                 at = (at + 13) % LINES;
-                if me == 1 && how != Lines::BothWrite {
+                if me == 1 {
                     // The next address waits for the data.
                     at += data[at].load(Relaxed) as usize;
                     continue;
                 }
                 data[at].store(0, Relaxed);
-                if how != Lines::Write {
+                if fenced {
                     M::Word::fence(SeqCst);
                 }
             }

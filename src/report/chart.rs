@@ -203,8 +203,13 @@ impl<'a> Drawing<'a> {
 
     /// The words beside the plot: a curve a line, then what is dashed and what is hollow.
     fn labels(&self) -> Vec<(String, Option<(Look, bool)>)> {
-        let mut labels: Vec<_> =
-            self.curves.iter().map(|(curve, look)| (label(curve), Some((*look, false)))).collect();
+        let mut labels: Vec<_> = self
+            .curves
+            .iter()
+            .map(|(curve, look)| {
+                (label(curve, self.curves.iter().map(|(other, _)| other)), Some((*look, false)))
+            })
+            .collect();
         labels.push(("ideal".to_owned(), None));
         if let Some((_, look)) = self.figures.first() {
             labels.push(("hollow: the paper's".to_owned(), Some((*look, true))));

@@ -90,6 +90,12 @@ impl Group {
         join(&settings_pairs(&self.settings).filter(portable).collect::<Vec<_>>())
     }
 
+    /// The counts of processors that schemes other than the serial one ran on.
+    pub(crate) fn parallel_counts(&self) -> impl Iterator<Item = u32> {
+        let parallel = self.curves.iter().filter(|curve| curve.scheme != "serial");
+        parallel.flat_map(|curve| curve.points.keys().copied())
+    }
+
     /// A curve a scheme, of its best point at each count of processors ("best topology per point", Paper II sec. 4.2).
     /// Where there is but one parallel scheme its settings are the question, so that each keeps its curve.
     pub(crate) fn best_curves(&self) -> Vec<Curve> {

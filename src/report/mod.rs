@@ -8,6 +8,7 @@ mod group;
 mod marker;
 mod table;
 mod text;
+mod winners;
 
 pub use chart::{Chart, speedup_charts};
 pub use table::{Line, Table, table};

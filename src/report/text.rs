@@ -2,8 +2,9 @@
 
 use super::group::{Curve, Group};
 use super::table::{Line, Table};
-use crate::record::THREADS;
+use super::winners::winners;
 use crate::record::statistics::Interval;
+use crate::record::{THREADS, settings_pairs};
 use std::collections::BTreeSet;
 
 /// Beyond so many columns the intervals are left out: the line would not fit a screen.
@@ -16,6 +17,7 @@ pub(crate) fn text(table: &Table) -> String {
         parts.push(figure_text(&figures));
     }
     parts.extend(table.groups.iter().map(group_text));
+    parts.extend(winners(&table.groups));
     if parts.is_empty() { "no rows to show".to_owned() } else { parts.join("\n") }
 }
 
@@ -73,7 +75,7 @@ fn group_text(group: &Group) -> String {
     cells[0].extend(counts.iter().map(u32::to_string));
     for curve in &group.curves {
         let cell = |count| curve.points.get(count).map_or(String::new(), |point| speedup(point, intervals));
-        cells.push(std::iter::once(label(curve)).chain(counts.iter().map(cell)).collect());
+        cells.push(std::iter::once(label(curve, &group.curves)).chain(counts.iter().map(cell)).collect());
     }
     let settings = if group.settings.is_empty() { String::new() } else { format!(", {}", group.settings) };
     let note = if intervals { ": median [95 % interval]" } else { "" };
@@ -88,17 +90,22 @@ fn speedup(point: &Interval, interval: bool) -> String {
     }
 }
 
-/// The scheme, with its own settings where it has some.
-pub(crate) fn label(curve: &Curve) -> String {
-    if curve.settings.is_empty() {
-        return curve.scheme.clone();
-    }
-    let settings = curve.settings.replace(&format!("{}.", curve.scheme), "").replace(';', ", ");
-    format!("{} {settings}", curve.scheme)
+/// The scheme, with those of its own settings that tell it from other curves of the same scheme.
+pub(crate) fn label<'a>(curve: &Curve, all: impl IntoIterator<Item = &'a Curve>) -> String {
+    let others: Vec<&Curve> = all.into_iter().filter(|other| other.scheme == curve.scheme).collect();
+    let tells = |pair: &(&str, &str)| {
+        others.iter().any(|other| settings_pairs(&other.settings).all(|theirs| theirs != *pair))
+    };
+    let settings = settings_pairs(&curve.settings).filter(tells);
+    let bare = settings.map(|(key, value)| {
+        let key = key.split_once('.').map_or(key, |(_, bare)| bare);
+        format!(" {key}={value}")
+    });
+    std::iter::once(curve.scheme.clone()).chain(bare).collect()
 }
 
 /// Columns as wide as their widest cell; the first `left` of them aligned left, the others right.
-fn align(cells: &[Vec<String>], left: usize) -> String {
+pub(crate) fn align(cells: &[Vec<String>], left: usize) -> String {
     let width = |column: usize| cells.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
     let mut text = String::new();
     for line in cells {

@@ -1,0 +1,107 @@
+//! Which scheme wins where: one line a choice of common settings, one column a count of processors.
+
+use super::group::Group;
+use super::text::align;
+use crate::record::settings_pairs;
+use std::collections::BTreeSet;
+
+/// The plane of winners; none where there is but one choice of settings, or nothing to choose between.
+///
+/// A cell names the fastest scheme and by how much it beats the next, one processor being a candidate
+/// everywhere: its speedup is 1.
+pub(crate) fn winners(groups: &[Group]) -> Option<String> {
+    let schemes: BTreeSet<&str> = groups
+        .iter()
+        .flat_map(|group| group.curves.iter().map(|curve| curve.scheme.as_str()))
+        .filter(|scheme| *scheme != "serial")
+        .collect();
+    if groups.len() < 2 || schemes.len() < 2 {
+        return None;
+    }
+    let counts: BTreeSet<u32> = groups.iter().flat_map(Group::parallel_counts).collect();
+    let mut cells = vec![vec!["winner, and its margin over the next".to_owned()]];
+    cells[0].extend(counts.iter().map(|count| format!("P = {count}")));
+    for group in groups {
+        let mut line = vec![place(group, groups)];
+        line.extend(counts.iter().map(|&count| winner(group, count)));
+        cells.push(line);
+    }
+    Some(align(&cells, 1))
+}
+
+/// What tells a group from the others: machine and scene where they differ, and the settings that do.
+fn place(group: &Group, groups: &[Group]) -> String {
+    let mut words = Vec::new();
+    if groups.iter().any(|other| other.machine != group.machine) {
+        words.push(group.machine.clone());
+    }
+    if groups.iter().any(|other| other.scene != group.scene) {
+        words.push(group.scene.clone());
+    }
+    let differs = |pair: &(&str, &str)| {
+        groups.iter().any(|other| settings_pairs(&other.settings).all(|theirs| theirs != *pair))
+    };
+    let settings = settings_pairs(&group.settings).filter(differs);
+    words.extend(settings.map(|(key, value)| {
+        let bare = key.split_once('.').map_or(key, |(_, bare)| bare);
+        format!("{bare}={value}")
+    }));
+    words.join(" ")
+}
+
+fn winner(group: &Group, count: u32) -> String {
+    let mut ranked = vec![("serial", 1.0)];
+    for curve in group.best_curves().iter().filter(|curve| curve.scheme != "serial") {
+        if let Some(point) = curve.points.get(&count) {
+            let scheme = group.curves.iter().find(|other| other.scheme == curve.scheme);
+            ranked.push((scheme.map_or("", |scheme| &scheme.scheme), point.median));
+        }
+    }
+    ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
+    match ranked[..] {
+        [(scheme, best), (_, next), ..] => {
+            format!("{scheme} {best:.2}x +{:.0} %", 100.0 * (best / next - 1.0))
+        }
+        _ => "-".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::group::groups;
+    use super::winners;
+    use crate::record::Row;
+
+    fn row(scheme: &str, work: &str, processors: u32, speedup: f64) -> Row {
+        Row {
+            run: "r".into(),
+            experiment: "e".into(),
+            job: "tree".into(),
+            scene: "s".into(),
+            structure: "skip_tree".into(),
+            scheme: scheme.into(),
+            settings: format!("job.nodes=9;job.work_ns={work}"),
+            machine: "e4000".into(),
+            processors,
+            repeat: 0,
+            frame: None,
+            metric: "speedup".into(),
+            unit: "x".into(),
+            value: speedup,
+        }
+    }
+
+    #[test]
+    fn the_fastest_wins_by_its_margin_and_one_processor_may() {
+        let rows = [
+            row("hybrid", "1-2", 2, 0.5),
+            row("lock_free", "1-2", 2, 0.8),
+            row("hybrid", "3-4", 2, 1.2),
+            row("lock_free", "3-4", 2, 1.8),
+        ];
+        let text = winners(&groups(&rows, "speedup")).unwrap();
+        assert!(text.contains("work_ns=1-2") && text.contains("serial 1.00x +25 %"), "{text}");
+        assert!(text.contains("lock_free 1.80x +50 %") && !text.contains("nodes"), "{text}");
+        assert!(winners(&groups(&rows[..2], "speedup")).is_none(), "one choice of settings is no plane");
+    }
+}

@@ -215,7 +215,7 @@ mod tests {
         assert_eq!(of(6, 3), [1, 3, 5], "figure 1h");
         assert_eq!(of(2, 1), [1]);
         assert_eq!(of(13, 1), [1]);
-        assert_eq!(of(1, 4), []);
+        assert_eq!(of(1, 4), Vec::<usize>::new());
         for processors in 1..40 {
             for n in 1..50 {
                 let mut found = of(processors, n);

@@ -7,8 +7,8 @@
 //! The words (lock, length, in work) are one allocation: with [`Layout::Packed`] the lock lies beside
 //! what it guards, as in 1999.
 
-use super::lock::{Held, Words, hold};
 use super::LockKind;
+use super::lock::{Held, Words, hold};
 use crate::machine::{Layout, Machine, Shared, Slot, Word};
 use std::sync::atomic::Ordering;
 
@@ -98,4 +98,3 @@ impl<M: Machine> QueueGuard<'_, M> {
         self.in_work_word().store(tasks, Ordering::Relaxed);
     }
 }
-

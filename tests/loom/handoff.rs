@@ -4,15 +4,16 @@ use crate::machine::{LoomSlot, LoomWord};
 use crate::mutant::Mutant::{NoFence, Relaxed};
 use crate::mutant::assert_caught;
 use crate::{Bounds, check};
-use apportion::machine::{Slot, Word};
 use apportion::machine::handoff::Handoff;
+use apportion::machine::{Slot, Word};
 use loom::sync::Notify;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 /// Two pieces of work, one after the other, to a helper that looks `patience` times before it parks.
 fn hands_over(patience: u32, wakes: bool) {
-    let shared = Arc::new((Handoff::<LoomWord>::default(), LoomSlot::new(0_u64), Notify::new(), LoomWord::new(0)));
+    let shared =
+        Arc::new((Handoff::<LoomWord>::default(), LoomSlot::new(0_u64), Notify::new(), LoomWord::new(0)));
     let helper = {
         let shared = shared.clone();
         loom::thread::spawn(move || {

@@ -261,12 +261,7 @@ impl Machine for Loom {
         4
     }
 
-    fn alloc<T: Send + Sync>(
-        &self,
-        n: usize,
-        layout: Layout,
-        mut make: impl FnMut(usize) -> T,
-    ) -> Shared<T> {
+    fn alloc<T: Send + Sync>(&self, n: usize, layout: Layout, mut make: impl FnMut(usize) -> T) -> Shared<T> {
         let shared = Shared::new(Arc::new(Heap), n, layout, |i| {
             FIRST_OF_TWO.set(n == 2 && i == 0);
             make(i)

@@ -72,7 +72,12 @@ pub(crate) fn is_caught(mutant: Mutant, bounds: Bounds, body: impl Fn() + Send +
 
 /// Asserts that loom finds `body` wrong on each of the broken machines.
 #[track_caller]
-pub(crate) fn assert_caught(what: &str, mutants: &[Mutant], bounds: Bounds, body: impl Fn() + Copy + Send + Sync + 'static) {
+pub(crate) fn assert_caught(
+    what: &str,
+    mutants: &[Mutant],
+    bounds: Bounds,
+    body: impl Fn() + Copy + Send + Sync + 'static,
+) {
     for &mutant in mutants {
         assert!(is_caught(mutant, bounds, body), "{what}: the mutant {mutant:?} was not caught");
     }

@@ -27,7 +27,8 @@ fn passes(capacity: usize, remember_index: bool, in_chunks: bool) {
             let tasks: Vec<u64> = (1..=TASKS).collect();
             let mut sent = 0;
             while sent < tasks.len() {
-                let now = if in_chunks { to.push_all(&tasks[sent..]) } else { usize::from(to.push(tasks[sent])) };
+                let now =
+                    if in_chunks { to.push_all(&tasks[sent..]) } else { usize::from(to.push(tasks[sent])) };
                 sent += now;
                 if now == 0 {
                     cpu.spin();

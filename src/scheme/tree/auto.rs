@@ -76,8 +76,7 @@ impl<M: Machine> Auto<M> {
             Mode::Sharing { left, .. } => left == 0,
         };
         let before = machine.now();
-        let shares =
-            if serial { self.serial.run(machine, work)? } else { self.shared.run(machine, work)? };
+        let shares = if serial { self.serial.run(machine, work)? } else { self.shared.run(machine, work)? };
         let ticks = machine.now().saturating_sub(before) as f64;
         if serial {
             let old = self.serial_ticks;
@@ -99,7 +98,9 @@ impl<M: Machine> Auto<M> {
                     self.stay_serial()
                 }
             }
-            Mode::Sharing { ticks: shared, .. } if serial => Mode::Sharing { left: SERIAL_EVERY, ticks: shared },
+            Mode::Sharing { ticks: shared, .. } if serial => {
+                Mode::Sharing { left: SERIAL_EVERY, ticks: shared }
+            }
             Mode::Sharing { left, ticks: shared } => {
                 let shared = 0.75 * shared + 0.25 * ticks;
                 if shared < self.serial_ticks {

@@ -83,13 +83,8 @@ impl<M: Machine> Side<'_, M> {
                 self.received += 1;
                 return Some(task);
             }
-            let over = self.queues.quiescence.wait(
-                self.cpu,
-                self.sent,
-                self.received,
-                &[own.length()],
-                has_work,
-            );
+            let over =
+                self.queues.quiescence.wait(self.cpu, self.sent, self.received, &[own.length()], has_work);
             if over {
                 return None;
             }

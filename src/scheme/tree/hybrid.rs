@@ -16,7 +16,8 @@ use crate::machine::{Layout, Machine, Processor, RunError, Shared, Word};
 use crate::scheme::{SettingError, Settings};
 use std::sync::atomic::Ordering;
 
-pub(super) const SUMMARY: &str = "global counter for the first 6 P tasks, then each alone (Paper II sec. 3.3)";
+pub(super) const SUMMARY: &str =
+    "global counter for the first 6 P tasks, then each alone (Paper II sec. 3.3)";
 
 pub(super) struct Hybrid<M: Machine> {
     queues: CounterQueues<M>,

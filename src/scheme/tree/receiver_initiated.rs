@@ -20,7 +20,8 @@ use crate::scheme::{SettingError, Settings};
 use crate::sync::Quiescence;
 use std::sync::atomic::Ordering;
 
-pub(super) const SUMMARY: &str = "the idle ask, the busy hand over half (Paper II sec. 4.1, receiver-induced)";
+pub(super) const SUMMARY: &str =
+    "the idle ask, the busy hand over half (Paper II sec. 4.1, receiver-induced)";
 
 /// An answer: nothing to give. Other answers are numbers of tasks; 0 means none yet.
 const REFUSED: u64 = u64::MAX;
@@ -154,12 +155,8 @@ impl<M: Machine> ReceiverInitiated<M> {
         let Some(other) = self.someone_rich(cpu) else { return 0 };
         let (me, answer) = (cpu.id(), &self.answers[cpu.id()]);
         // ORDERING: Release pairs with the Acquire load in `answer`: our mailbox has been emptied.
-        let asked = self.requests[other].compare_exchange(
-            0,
-            me as u64 + 1,
-            Ordering::Release,
-            Ordering::Relaxed,
-        );
+        let asked =
+            self.requests[other].compare_exchange(0, me as u64 + 1, Ordering::Release, Ordering::Relaxed);
         if asked.is_err() {
             cpu.spin();
             self.answer(cpu, local);
@@ -168,9 +165,8 @@ impl<M: Machine> ReceiverInitiated<M> {
         let over = self.quiescence.over();
         loop {
             // ORDERING: Acquire pairs with the Release store in `answer`.
-            let ready = || {
-                answer.load(Ordering::Acquire) != 0 || self.is_asked(cpu) || self.quiescence.is_over()
-            };
+            let ready =
+                || answer.load(Ordering::Acquire) != 0 || self.is_asked(cpu) || self.quiescence.is_over();
             cpu.wait_until(&[answer, &self.requests[me], over], ready);
             let tasks = answer.load(Ordering::Acquire);
             if tasks == 0 {

@@ -2,11 +2,13 @@
 //! node is visited exactly once.
 
 use apportion::machine::simulated::Model;
-use apportion::machine::{Machine, Processor, RunError, Simulated, Threads};
+use apportion::machine::{Layout, Machine, Processor, RunError, Simulated, Threads, Word};
 use apportion::scheme::SettingError;
 use apportion::scheme::tree::{SCHEMES, Scheme, Share, TreeWork, work};
+use apportion::sync::{Lock, LockKind};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
+use std::sync::atomic::Ordering;
 use std::sync::{Mutex, MutexGuard};
 use std::time::Duration;
 
@@ -202,12 +204,52 @@ fn survives<M: Machine>(machine: &M, processors: usize, tree: &Tree, rotten: &Tr
     }
 }
 
+/// A holder that is being unwound must give its lock back without waiting for anybody.
+fn locks_in_failed_runs<M: Machine>(machine: &M, culprit: usize, delay: u64) {
+    for &(name, kind) in LockKind::ALL {
+        let lock = Lock::new(machine, kind, Layout::Packed, 3);
+        let word = || machine.alloc(1, Layout::Packed, |_| M::Word::new(0));
+        let (words, own) = (word(), word());
+        let failed = machine.run(3, |cpu| {
+            if culprit == 3 && cpu.id() == 2 {
+                // It has nothing to do with the lock, so it may fail at any moment of the others.
+                cpu.charge(delay);
+                // ORDERING: Relaxed: a shared access to wait for its turn at.
+                own[0].load(Ordering::Relaxed);
+                std::panic::resume_unwind(Box::new("beside"));
+            }
+            for turn in 0..200 {
+                lock.with(cpu, || {
+                    // ORDERING: Relaxed: the lock orders it.
+                    words[0].store(turn, Ordering::Relaxed);
+                    if culprit == cpu.id() && turn == 20 + delay % 7 {
+                        std::panic::resume_unwind(Box::new("while holding"));
+                    }
+                });
+                cpu.charge(delay % 97);
+            }
+        });
+        assert!(matches!(failed, Err(RunError::Panicked { .. })), "{name}: {failed:?}");
+    }
+}
+
+#[test]
+fn a_panic_while_a_lock_is_held_or_handed_on_ends_the_run() {
+    let team = Threads::new(3).expect("threads");
+    for delay in 0..300 {
+        for culprit in [0, 3] {
+            locks_in_failed_runs(&e4000().disturbed(delay), culprit, delay * 13);
+            locks_in_failed_runs(&team, culprit, delay);
+        }
+    }
+}
+
 /// With MCS locks a releasing processor may wait for its successor, also while it is being unwound.
 #[test]
 fn a_panic_ends_runs_under_every_kind_of_lock() {
     let tree = Tree::of((1..200).map(|node| (node - 1) / 4));
     for (name, _) in SCHEMES {
-        for (lock, _) in apportion::sync::LockKind::ALL {
+        for (lock, _) in LockKind::ALL {
             for seed in 0..20 {
                 let machine = e4000().disturbed(seed);
                 let given = settings(&[("lock", (*lock).to_owned())]);

@@ -275,7 +275,8 @@ fn a_descheduled_worker_delays_but_spoils_nothing() {
 
 #[test]
 fn a_large_tree() {
-    let tree = Tree::of((1..100_000_u32).map(|node| node - 1 - node.wrapping_mul(2_654_435_761) % node.min(40)));
+    let tree =
+        Tree::of((1..100_000_u32).map(|node| node - 1 - node.wrapping_mul(2_654_435_761) % node.min(40)));
     {
         let team = team();
         check_all(&*team, team.most_processors(), 32, &tree, 1);

@@ -1,2 +1,9 @@
-//! The command `apportion`.
-fn main() {}
+//! The command `apportion`: see `apportion help`.
+
+mod command;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    command::main()
+}

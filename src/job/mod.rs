@@ -1,1 +1,4 @@
 //! Jobs: work for a scheme, and the serial oracle each result is held against.
+
+pub mod cull;
+pub mod synthetic;

@@ -90,6 +90,10 @@ pub trait Processor {
     /// Reads shared read-only data of `T`'s size. Costs nothing natively. Data that was not allocated
     /// from the machine is private and costs nothing anywhere.
     fn touch<T>(&self, data: &T);
+    /// Spends what the private bookkeeping of one task costs. Costs nothing natively, where the code
+    /// around a visit takes its own time.
+    #[inline(always)]
+    fn keep_books(&self) {}
     /// One turn of a busy wait. It ends the worker (by unwinding) when another worker has panicked,
     /// so that no wait outlives a failed run.
     fn spin(&self);

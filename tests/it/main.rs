@@ -1,5 +1,12 @@
 //! One binary for all integration tests: oracles, goldens in virtual time, invariants, command line, house rules.
 
+mod command_line;
+mod experiment;
+mod house_rules;
+mod mock;
+mod record;
+mod report;
+mod run;
 mod scene;
 mod schemes;
 mod structure;

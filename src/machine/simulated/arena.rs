@@ -69,7 +69,8 @@ impl Arena for Memory {
         let before = chunks.last().map_or(0, |c| c.before + c.layout.size());
         let layout = Layout::from_size_align(size.max(CHUNK), align.max(LINE)).expect("valid layout");
         // SAFETY: the layout's size is not zero.
-        let start = NonNull::new(unsafe { alloc_zeroed(layout) }).unwrap_or_else(|| handle_alloc_error(layout));
+        let start =
+            NonNull::new(unsafe { alloc_zeroed(layout) }).unwrap_or_else(|| handle_alloc_error(layout));
         chunks.push(Chunk { start, layout, used: size, before });
         start
     }

@@ -146,7 +146,15 @@ impl Engine {
         } else if kind == Kind::Store && stores.len() >= self.model.store_buffer {
             clock = clock.max(stores.pop_front().unwrap_or(0));
         }
-        let served = self.coherence.access(&self.model, p as u16, line, access, clock);
+        // Buffered stores miss a few at a time (`store_misses`); a load does not wait for them.
+        let stores = &self.stores[p];
+        let after = match self.model.store_misses {
+            at_once if kind == Kind::Store && at_once > 0 && stores.len() >= at_once => {
+                stores[stores.len() - at_once]
+            }
+            _ => 0,
+        };
+        let served = self.coherence.access(&self.model, (p as u16, line), access, clock, after);
         match kind {
             Kind::Load => clock = served.done,
             Kind::Atomic => clock = served.done + self.model.atomic,
@@ -169,7 +177,8 @@ impl Engine {
         for (p, ticket) in self.watchers.remove(&line).unwrap_or_default() {
             if self.parked[p] && self.tickets[p] == ticket {
                 self.parked[p] = false;
-                self.clocks[p] = self.clocks[p].max(at);
+                // Whoever looks every `poll_pause` cycles sees a change half a pause late, on average.
+                self.clocks[p] = self.clocks[p].max(at + self.model.poll_pause / 2);
                 self.ready.push(Reverse(self.key(p)));
             }
         }
@@ -294,6 +303,17 @@ pub(super) fn spend(cycles: u64, work: bool) {
     }
 }
 
+/// Spends what the bookkeeping of one task costs beyond its shared accesses.
+#[inline]
+pub(super) fn keep_books() {
+    let engine = CURRENT.get();
+    if !engine.is_null() {
+        // SAFETY: as in `bill`; nothing suspends here.
+        let e = unsafe { &mut *engine };
+        e.clocks[e.current] += e.model.task;
+    }
+}
+
 /// One turn of a busy wait that watches nothing: a pause, then whoever is earlier.
 pub(super) fn pause() {
     let engine = CURRENT.get();
@@ -319,12 +339,12 @@ pub(super) fn wait_until(addresses: impl Iterator<Item = usize> + Clone, mut rea
         if ready() {
             return;
         }
-        // SAFETY: the borrow ends before the suspension.
         let yielder = {
+            // SAFETY: the borrow ends before the suspension.
             let e = unsafe { &mut *engine };
-            let missed = addresses.clone().any(|a| {
-                e.line_of(a).is_some_and(|line| e.coherence.written_since(line, armed))
-            });
+            let missed = addresses
+                .clone()
+                .any(|a| e.line_of(a).is_some_and(|line| e.coherence.written_since(line, armed)));
             if missed {
                 None
             } else {

@@ -2,9 +2,13 @@
 //!
 //! Each line is in one of the states of a MOESI protocol, kept as (owner, dirty, sharers):
 //! modified/exclusive = an owner who is the only sharer; owned = a dirty owner among sharers;
-//! shared = sharers without a dirty owner. A transaction waits for the bus and for the line, occupies
-//! the bus for a while, and holds the line until its requester has it, so that contended lines are
-//! handed on one requester at a time.
+//! shared = sharers without a dirty owner. A transaction waits for the bus and for the line, and
+//! occupies the bus for a while. A line on its way to a new owner is held until that one has it, so
+//! that contended lines are handed on one writer at a time; readers are served side by side.
+//!
+//! A request takes time to reach the owner, who meanwhile goes on using the line: for `burst` cycles
+//! after it was asked (or after it got the line, if that is later) its accesses still hit. They come
+//! before the line leaves, so whoever asked sees them when it arrives.
 
 use super::model::Model;
 
@@ -31,11 +35,22 @@ struct Line {
     /// Whether somebody sleeps until this line is written.
     watched: bool,
     busy_until: u64,
+    /// Who had the line before, and until when it goes on using it.
+    leaver: u16,
+    leaves_at: u64,
     /// Number of the last write to the line, 0 for none.
     written: u64,
 }
 
-const FRESH: Line = Line { owner: NOBODY, dirty: false, watched: false, busy_until: 0, written: 0 };
+const FRESH: Line = Line {
+    owner: NOBODY,
+    dirty: false,
+    watched: false,
+    busy_until: 0,
+    leaver: NOBODY,
+    leaves_at: 0,
+    written: 0,
+};
 
 /// The state of all lines and caches.
 pub(super) struct Coherence {
@@ -105,14 +120,22 @@ impl Coherence {
     fn sole_sharer(&self, line: u32, p: u16) -> bool {
         let at = line as usize * self.words;
         let row = &self.sharers[at..at + self.words];
-        row.iter().enumerate().all(|(w, &bits)| {
-            bits == if w == usize::from(p) / 64 { 1 << (p % 64) } else { 0 }
-        })
+        row.iter()
+            .enumerate()
+            .all(|(w, &bits)| bits == if w == usize::from(p) / 64 { 1 << (p % 64) } else { 0 })
     }
 
-    /// Serves an access of processor `p` to `line` that starts at `now`.
+    /// Serves an access of processor `p` to `line` that is made at `now`; if it needs a transaction, that
+    /// comes after `after`, when the processor's earlier stores are through.
     #[inline]
-    pub(super) fn access(&mut self, model: &Model, p: u16, line: u32, access: Access, now: u64) -> Served {
+    pub(super) fn access(
+        &mut self,
+        model: &Model,
+        (p, line): (u16, u32),
+        access: Access,
+        now: u64,
+        after: u64,
+    ) -> Served {
         if access == Access::Write {
             self.writes += 1;
             self.lines[line as usize].written = self.writes;
@@ -124,6 +147,9 @@ impl Coherence {
             let time = if self.fill_l1(model, p, line) { model.l1_hit } else { model.l2_hit };
             return Served { done: now + time, hit: true };
         }
+        if state.leaver == p && now < state.leaves_at {
+            return Served { done: now + model.l1_hit, hit: true };
+        }
         // The request takes its turn on the bus when it is made; a line in transit is waited for after.
         let start = now.max(self.bus_free);
         self.bus_free = start + model.bus_occupancy;
@@ -134,12 +160,18 @@ impl Coherence {
             (false, true) => model.cache_to_cache,
             (false, false) => model.memory,
         };
-        let done = start.max(state.busy_until) + latency;
+        let asked = start.max(after).max(state.busy_until);
+        let done = asked + latency;
         let alone = self.row(line).iter().all(|&bits| bits == 0);
         let entry = &mut self.lines[line as usize];
-        entry.busy_until = done;
+        if owned_elsewhere && model.burst > 0 {
+            (entry.leaver, entry.leaves_at) = (state.owner, asked + model.burst);
+        }
         match access {
             Access::Write => {
+                // Whoever comes next waits until the new owner has the line. A copy to a reader holds
+                // nobody up: its source still has the data, and the bus is free again.
+                entry.busy_until = done;
                 entry.owner = p;
                 entry.dirty = true;
                 self.row(line).fill(0);

@@ -16,8 +16,8 @@ use crate::machine::{Layout, Machine, Processor, RunError, Shared, Word, panic_m
 use arena::Memory;
 use corosensei::stack::DefaultStack;
 use corosensei::{Coroutine, CoroutineResult};
-use engine::{Engine, Installed};
 pub use engine::Statistics;
+use engine::{Engine, Installed};
 pub use model::{Model, ModelError};
 use std::cell::UnsafeCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -116,9 +116,11 @@ impl Simulated {
             let result = body();
             let others = cpu.count as u64 - 1;
             cpu.wait_until(&[finished], || finished.load(Ordering::Acquire) == others);
+            engine::spend(self.model.finish, false);
             result
         } else {
             cpu.wait_until(&[start], || start.load(Ordering::Acquire) == 1);
+            engine::spend(self.model.start, false);
             let result = body();
             finished.fetch_add(1, Ordering::Release);
             result
@@ -150,6 +152,10 @@ impl Processor for VirtualProcessor {
 
     fn touch<T>(&self, data: &T) {
         engine::touch(std::ptr::from_ref(data).addr(), size_of::<T>());
+    }
+
+    fn keep_books(&self) {
+        engine::keep_books();
     }
 
     fn spin(&self) {
@@ -202,8 +208,9 @@ impl Machine for Simulated {
         for (id, result) in results.iter().enumerate() {
             let stack = match stacks.pop() {
                 Some(stack) => stack,
-                None => DefaultStack::new(STACK)
-                    .map_err(|source| RunError::System { what: "a stack", source })?,
+                None => {
+                    DefaultStack::new(STACK).map_err(|source| RunError::System { what: "a stack", source })?
+                }
             };
             let (body, machine) = (&body, self);
             // SAFETY: what the closure borrows lives until the end of this function, and the
@@ -272,7 +279,7 @@ impl Machine for Simulated {
 
     fn start_ticks(&self, processors: usize) -> u64 {
         // Each processor's copy of the start word, and its turn at the finishing count.
-        processors as u64 * 2 * self.model.cache_to_cache
+        processors as u64 * 2 * self.model.cache_to_cache + self.model.start + self.model.finish
     }
 
     fn now(&self) -> u64 {

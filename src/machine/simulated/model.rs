@@ -41,8 +41,27 @@ pub struct Model {
     pub fence: u64,
     /// Depth of the store buffer (in order, as on a total-store-order machine).
     pub store_buffer: usize,
+    /// How many misses of buffered stores are under way at once; 0 for as many as the buffer holds. With
+    /// 1, a store asks for its line only when the one before is done.
+    #[serde(default)]
+    pub store_misses: usize,
     /// Cycles between two looks of a busy wait.
     pub poll_pause: u64,
+    /// Cycles for which a processor keeps using a line it has written after another has asked for it,
+    /// because the request is still on its way: what lets an owner make several accesses a turn. 0: the
+    /// line leaves at once.
+    #[serde(default)]
+    pub burst: u64,
+    /// Cycles of private bookkeeping a task that passes through a scheme (a local queue's push and pop,
+    /// the loop around them), beyond its shared accesses. 0: only shared accesses are billed.
+    #[serde(default)]
+    pub task: u64,
+    /// Cycles from the start of a run until a helper begins, beyond what the start word's line takes.
+    #[serde(default)]
+    pub start: u64,
+    /// Cycles from the last helper's finish to the end of the run, beyond what the finishing word takes.
+    #[serde(default)]
+    pub finish: u64,
     /// How much slower this machine is than the host on which node costs were measured, in cycles
     /// of this machine for a nanosecond measured there. See `job::cull::costs`.
     pub cycles_per_measured_ns: f64,
@@ -178,11 +197,16 @@ impl Model {
         }
         let times = [self.l1_hit, self.l2_hit, self.memory, self.cache_to_cache, self.upgrade];
         let times = times.into_iter().chain([self.bus_occupancy, self.atomic, self.fence, self.poll_pause]);
+        let times = times.chain([self.burst, self.task, self.start, self.finish]);
         if let Some(time) = times.into_iter().find(|&t| t > 1_000_000) {
             return wrong("a time", time.to_string(), "at most 1,000,000 cycles");
         }
         if self.l1_hit == 0 || self.poll_pause == 0 {
-            return wrong("l1_hit or poll_pause", "0".to_owned(), "at least 1 cycle, or waiting takes no time");
+            return wrong(
+                "l1_hit or poll_pause",
+                "0".to_owned(),
+                "at least 1 cycle, or waiting takes no time",
+            );
         }
         for (key, value) in
             [("clock_mhz", self.clock_mhz), ("cycles_per_measured_ns", self.cycles_per_measured_ns)]

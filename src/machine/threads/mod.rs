@@ -68,7 +68,11 @@ impl Threads {
     /// As [`Threads::new`].
     pub fn with_settings(processors: usize, settings: &TeamSettings) -> Result<Self, RunError> {
         if processors == 0 || processors > MOST {
-            return Err(RunError::Processors { asked: processors, most: MOST, machine: "threads".to_owned() });
+            return Err(RunError::Processors {
+                asked: processors,
+                most: MOST,
+                machine: "threads".to_owned(),
+            });
         }
         Ok(Threads { team: Team::start(processors, settings)?, started: now(), alone: Thread::outside(0, 1) })
     }

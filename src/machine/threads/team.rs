@@ -22,7 +22,6 @@ type Body = *const (dyn Fn(&Thread) + Sync);
 
 struct Common {
     helpers: Vec<CachePadded<Helper>>,
-    job: UnsafeCell<Option<(Body, usize)>>,
     ended: Arc<AtomicBool>,
     failure: Mutex<Option<(usize, String)>>,
     spin: Duration,
@@ -30,8 +29,11 @@ struct Common {
 }
 
 #[derive(Default)]
+#[repr(C, align(64))]
 struct Helper {
     handoff: Handoff<NativeWord>,
+    /// What to run, in the very line whose change tells of it: one transfer instead of two.
+    job: UnsafeCell<Option<(Body, usize)>>,
     done: CachePadded<Done>,
 }
 
@@ -57,7 +59,14 @@ pub(super) struct Team {
     common: Arc<Common>,
     threads: Vec<JoinHandle<()>>,
     running: AtomicBool,
-    epoch: Mutex<u64>,
+    caller: Mutex<Caller>,
+}
+
+/// What the calling thread keeps from run to run.
+struct Caller {
+    /// Number of the last run.
+    epoch: u64,
+    thread: Thread,
 }
 
 impl Team {
@@ -68,7 +77,6 @@ impl Team {
         let patience = if processors <= super::Threads::cores() { 1 << 14 } else { 64 };
         let common = Arc::new(Common {
             helpers: (1..processors).map(|_| CachePadded::default()).collect(),
-            job: UnsafeCell::new(None),
             ended: Arc::new(AtomicBool::new(false)),
             failure: Mutex::new(None),
             spin: settings.spin,
@@ -79,7 +87,8 @@ impl Team {
         {
             core_affinity::set_for_current(core);
         }
-        let mut team = Team { common, threads: Vec::new(), running: AtomicBool::new(false), epoch: Mutex::new(0) };
+        let caller = Mutex::new(Caller { epoch: 0, thread: common.thread(0) });
+        let mut team = Team { common, threads: Vec::new(), running: AtomicBool::new(false), caller };
         for id in 1..processors {
             let (common, count) = (team.common.clone(), cores.len());
             let core = (count > 0).then(|| cores[id % count]);
@@ -112,22 +121,22 @@ impl Team {
         if self.running.swap(true, Ordering::Acquire) {
             return Err(RunError::Busy("threads".to_owned()));
         }
-        let mut epoch = self.epoch.lock().unwrap_or_else(|e| e.into_inner());
+        let mut caller = self.caller.lock().unwrap_or_else(|e| e.into_inner());
+        let Caller { epoch, thread: me } = &mut *caller;
         *epoch += 1;
+        me.count = processors;
         let common = &*self.common;
         // SAFETY: this only erases the lifetime; the loop below waits for every helper before `body`
         // goes out of scope.
         let erased: Body = unsafe {
             std::mem::transmute::<*const (dyn Fn(&Thread) + Sync + '_), Body>(std::ptr::from_ref(body))
         };
-        // SAFETY: no helper runs now (see `Common`), so nobody reads the job.
-        unsafe { *common.job.get() = Some((erased, processors)) };
         for (helper, thread) in common.helpers.iter().zip(&self.threads).take(processors - 1) {
+            // SAFETY: no helper runs now (see `Common`), so nobody reads the job.
+            unsafe { *helper.job.get() = Some((erased, processors)) };
             helper.handoff.post(*epoch, || thread.thread().unpark());
         }
-        let me =
-            Thread { id: 0, count: processors, patience: common.patience, ended: Arc::clone(&common.ended) };
-        let outcome = catch_unwind(AssertUnwindSafe(|| body(&me)));
+        let outcome = catch_unwind(AssertUnwindSafe(|| body(me)));
         if let Err(payload) = outcome {
             common.fail(0, &*payload);
         }
@@ -143,12 +152,13 @@ impl Team {
                 }
             }
         }
-        // SAFETY: all helpers of the run are done.
-        unsafe { *common.job.get() = None };
         let failure = common.failure.lock().unwrap_or_else(|e| e.into_inner()).take();
-        // ORDERING: Relaxed: the next run's posts publish it.
-        common.ended.store(false, Ordering::Relaxed);
-        drop(epoch);
+        // ORDERING: Relaxed: the helpers are done, and the next run's posts publish it. Written only if
+        // need be: the helpers hold copies of its line.
+        if common.ended.load(Ordering::Relaxed) {
+            common.ended.store(false, Ordering::Relaxed);
+        }
+        drop(caller);
         // ORDERING: Release pairs with the Acquire above.
         self.running.store(false, Ordering::Release);
         match failure {
@@ -171,6 +181,11 @@ impl Drop for Team {
 }
 
 impl Common {
+    /// The handle of processor `id`, made once: counting references every run would move a line.
+    fn thread(&self, id: usize) -> Thread {
+        Thread { id, count: 1, patience: self.patience, ended: Arc::clone(&self.ended) }
+    }
+
     /// Notes the first real panic and tells the others to end.
     fn fail(&self, processor: usize, payload: &(dyn Any + Send)) {
         if !payload.is::<Ended>() {
@@ -185,6 +200,7 @@ impl Common {
 /// A helper's life.
 fn work(common: &Common, id: usize) {
     let helper = &common.helpers[id - 1];
+    let mut me = common.thread(id);
     let mut seen = 0;
     loop {
         let mut turns = 0u32;
@@ -194,11 +210,11 @@ fn work(common: &Common, id: usize) {
             || {
                 std::hint::spin_loop();
                 turns += 1;
-                if turns % common.patience == 0 {
+                if turns.is_multiple_of(common.patience) {
                     std::thread::yield_now();
                 }
                 // Reading the clock costs tens of nanoseconds, so only now and then.
-                turns % 64 != 0 || since.get_or_insert_with(now).elapsed() < common.spin
+                !turns.is_multiple_of(64) || since.get_or_insert_with(now).elapsed() < common.spin
             },
             std::thread::park,
         );
@@ -206,8 +222,8 @@ fn work(common: &Common, id: usize) {
             return;
         }
         // SAFETY: the post that was just received follows the write of the job (Release, Acquire).
-        let (body, count) = unsafe { *common.job.get() }.expect("a post follows its job");
-        let me = Thread { id, count, patience: common.patience, ended: Arc::clone(&common.ended) };
+        let (body, count) = unsafe { *helper.job.get() }.expect("a post follows its job");
+        me.count = count;
         // SAFETY: the caller keeps the body alive until `done` is written.
         let outcome = catch_unwind(AssertUnwindSafe(|| unsafe { (*body)(&me) }));
         if let Err(payload) = outcome {

@@ -16,6 +16,7 @@ use crate::machine::{Machine, RunError};
 use crate::scheme::{SettingError, Settings};
 
 pub(super) const SUMMARY: &str = "one processor or lock_free, whichever has proved faster";
+pub(super) const NATIVE_ONLY: bool = false;
 
 pub(super) struct Auto<M: Machine> {
     serial: Serial<M>,

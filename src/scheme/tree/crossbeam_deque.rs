@@ -10,6 +10,7 @@ use crossbeam::deque::{Steal, Stealer, Worker};
 use std::sync::atomic::Ordering;
 
 pub(super) const SUMMARY: &str = "crate crossbeam-deque, idle workers spin (rival; threads only)";
+pub(super) const NATIVE_ONLY: bool = true;
 
 pub(super) struct CrossbeamDeque<M: Machine> {
     workers: Seats<Worker<u64>>,

@@ -13,9 +13,10 @@
 //! Topology (P2-07): processor p sends to p + 1 + floor(i P / n) for i in 0 .. n, modulo P. The paper's
 //! "(p/n + 1):th successor", read literally, gives self-links; its figure 1h (P = 6, n = 3) fits this.
 //!
-//! Deviations: a task whose known size is at most `grain` is descended on the spot (1: never, as in the
-//! paper). Loads are read without synchronisation: own = local + seen in in-queues; the successor's =
-//! its published local queue + what is known to be in the ring to it (P2-Q04).
+//! Deviations: a task whose known size is at most `grain`, and at most an eighth of an even share, is
+//! descended on the spot (`grain` = 1: never, as in the paper). Loads are read without synchronisation:
+//! own = local + seen in in-queues; the successor's = its published local queue + what is known to be in
+//! the ring to it (P2-Q04).
 //!
 //! Settings: `receivers` (n), `balance` (`off`, or `half_difference` as in the paper), `capacity` of a
 //! ring, `ring` (`remember` or `1999`: look at the other's index every time), `layout`, `grain`. With
@@ -28,6 +29,7 @@ use crate::sync::{Quiescence, Receiver, RingSettings, Sender, in_queue};
 use std::sync::atomic::Ordering;
 
 pub(super) const SUMMARY: &str = "rings between neighbours, sent blindly round robin (Paper II sec. 4)";
+pub(super) const NATIVE_ONLY: bool = false;
 
 pub(super) struct LockFree<M: Machine> {
     seats: Seats<Seat<M>>,
@@ -38,6 +40,9 @@ pub(super) struct LockFree<M: Machine> {
     balance: bool,
     grain: usize,
 }
+
+/// Pieces of an even share that are dealt out at least: they even out what blind sending does not.
+const PIECES: usize = 8;
 
 /// What a processor keeps from run to run.
 struct Seat<M: Machine> {
@@ -58,9 +63,9 @@ impl<M: Machine> LockFree<M> {
         let n = settings.number("receivers", 4, 1..=4096)?;
         let modes = [("off", false), ("half_difference", true)];
         let balance = settings.choice("balance", false, &modes)?;
-        let grain = settings.number("grain", 1, 1..=1 << 30)?;
+        let grain = settings.number("grain", 32, 1..=1 << 30)?;
         let ring = RingSettings {
-            capacity: settings.number("capacity", 32, 1..=1 << 20)?,
+            capacity: settings.number("capacity", 4, 1..=1 << 20)?,
             layout: settings.layout()?,
             remember_index: settings.choice("ring", true, &[("remember", true), ("1999", false)])?,
         };
@@ -98,6 +103,8 @@ impl<M: Machine> LockFree<M> {
         let Seat { local, stack, to, from } = &mut *seat;
         let mut share = Share { found: work.found(), visited: 0 };
         let (mut sent, mut received) = (0, 0);
+        let even = work.root().map_or(0, |root| work.size(root)) / self.processors;
+        let grain = self.grain.min(even / PIECES);
         // Whose turn it is to get the next task: a receiver, or at `to.len()` the local queue.
         let mut turn = to.len();
         // The in-queue being emptied, and the visits until loads are compared again.
@@ -126,7 +133,7 @@ impl<M: Machine> LockFree<M> {
                 },
             };
             let task = W::Task::unpack(task);
-            if self.grain > 1 && work.size(task) <= self.grain {
+            if grain > 1 && work.size(task) <= grain {
                 share.visited += work.descend(task, &mut share.found, cpu, stack);
                 continue;
             }
@@ -215,7 +222,7 @@ mod tests {
         assert_eq!(of(6, 3), [1, 3, 5], "figure 1h");
         assert_eq!(of(2, 1), [1]);
         assert_eq!(of(13, 1), [1]);
-        assert_eq!(of(1, 4), Vec::<usize>::new());
+        assert!(of(1, 4).is_empty());
         for processors in 1..40 {
             for n in 1..50 {
                 let mut found = of(processors, n);

@@ -37,16 +37,29 @@ mod work_stealing;
 use super::{SettingError, Settings};
 use crate::machine::{Machine, RunError};
 use std::collections::BTreeMap;
+use work::Billed;
 pub use work::{Share, Task, TreeWork, work};
 
+/// A scheme in the list of schemes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct About {
+    /// Its name: word of the command line, value in rows, legend.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub summary: &'static str,
+    /// Whether it is another library's, which runs on real threads only.
+    pub native_only: bool,
+}
+
 /// Declares the schemes: the list is the table of contents. Each file holds a type of one name, with
-/// `SUMMARY`, `new` and `run`; the file's name is the scheme's word everywhere.
+/// `SUMMARY`, `NATIVE_ONLY`, `new` and `run`; the file's name is the scheme's word everywhere.
 macro_rules! tree_schemes {
     ($($file:ident => $Scheme:ident),* $(,)?) => {
         enum AnyScheme<M: Machine> { $($Scheme($file::$Scheme<M>)),* }
 
-        /// The schemes by name, with a line on each.
-        pub const SCHEMES: &[(&str, &str)] = &[$((stringify!($file), $file::SUMMARY)),*];
+        /// The schemes, by name.
+        pub const SCHEMES: &[About] =
+            &[$(About { name: stringify!($file), summary: $file::SUMMARY, native_only: $file::NATIVE_ONLY }),*];
 
         impl<M: Machine> AnyScheme<M> {
             fn new(name: &str, machine: &M, processors: usize, settings: &Settings) -> Result<Self, SettingError> {
@@ -55,7 +68,7 @@ macro_rules! tree_schemes {
                         Ok(AnyScheme::$Scheme($file::$Scheme::new(machine, processors, settings)?))
                     })*
                     _ => {
-                        let known = SCHEMES.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+                        let known = SCHEMES.iter().map(|scheme| scheme.name).collect::<Vec<_>>().join(", ");
                         Err(SettingError::NoScheme { name: name.to_owned(), known })
                     }
                 }
@@ -105,7 +118,7 @@ impl<M: Machine> Scheme<M> {
         let settings = Settings::new(name, settings);
         let scheme = AnyScheme::new(name, machine, processors.max(1), &settings)?;
         settings.finish()?;
-        let name = SCHEMES.iter().find(|(known, _)| *known == name).expect("it was just made").0;
+        let name = SCHEMES.iter().find(|known| known.name == name).expect("it was just made").name;
         Ok(Scheme { scheme, name, processors, settings, spoilt: false })
     }
 
@@ -121,7 +134,7 @@ impl<M: Machine> Scheme<M> {
                 .expect("these settings have been used before");
         }
         self.spoilt = true;
-        let shares = self.scheme.run(machine, work)?;
+        let shares = self.scheme.run(machine, &Billed(work))?;
         self.spoilt = false;
         Ok(shares)
     }

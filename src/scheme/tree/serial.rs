@@ -9,6 +9,7 @@ use crate::scheme::{SettingError, Settings};
 use std::marker::PhantomData;
 
 pub(super) const SUMMARY: &str = "one processor, no sharing";
+pub(super) const NATIVE_ONLY: bool = false;
 
 pub(super) struct Serial<M> {
     stack: Vec<u64>,

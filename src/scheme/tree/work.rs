@@ -95,6 +95,47 @@ pub trait TreeWork: Sync {
     }
 }
 
+/// Work whose every task passes through a scheme's hands: each visit is billed its bookkeeping. What
+/// is descended on the spot is not.
+pub(super) struct Billed<'a, W>(pub(super) &'a W);
+
+impl<W: TreeWork> TreeWork for Billed<'_, W> {
+    type Task = W::Task;
+    type Found = W::Found;
+
+    #[inline]
+    fn root(&self) -> Option<W::Task> {
+        self.0.root()
+    }
+
+    #[inline]
+    fn found(&self) -> W::Found {
+        self.0.found()
+    }
+
+    #[inline]
+    fn visit<P: Processor>(&self, task: W::Task, found: &mut W::Found, cpu: &P, emit: impl FnMut(W::Task)) {
+        cpu.keep_books();
+        self.0.visit(task, found, cpu, emit);
+    }
+
+    #[inline]
+    fn descend<P: Processor>(
+        &self,
+        task: W::Task,
+        found: &mut W::Found,
+        cpu: &P,
+        stack: &mut Vec<u64>,
+    ) -> u64 {
+        self.0.descend(task, found, cpu, stack)
+    }
+
+    #[inline]
+    fn size(&self, task: W::Task) -> usize {
+        self.0.size(task)
+    }
+}
+
 /// What one processor did in a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Share<F> {

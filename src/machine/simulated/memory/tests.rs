@@ -14,7 +14,7 @@ fn machine(lines: usize) -> (Model, Coherence) {
 #[test]
 fn each_kind_of_access_has_its_price() {
     let (model, mut c) = machine(4);
-    let mut at = |p, line, access, now| c.access(&model, p, line, access, now).done - now;
+    let mut at = |p, line, access, now| c.access(&model, (p, line), access, now, 0).done - now;
     assert_eq!(at(0, 0, Read, 0), 75, "cold");
     assert_eq!(at(0, 0, Read, 1000), 1, "hit");
     assert_eq!(at(0, 0, Write, 2000), 1, "exclusive turns modified silently");
@@ -28,27 +28,27 @@ fn each_kind_of_access_has_its_price() {
 #[test]
 fn the_bus_and_the_line_are_handed_on_one_at_a_time() {
     let (model, mut c) = machine(4);
-    assert_eq!(c.access(&model, 0, 0, Write, 0).done, 75);
+    assert_eq!(c.access(&model, (0, 0), Write, 0, 0).done, 75);
     // Same line: waits until processor 0 has it. Other line: waits for the bus only.
-    assert_eq!(c.access(&model, 1, 0, Write, 0).done, 75 + 100);
-    assert_eq!(c.access(&model, 2, 1, Read, 0).done, 7 + 7 + 75);
+    assert_eq!(c.access(&model, (1, 0), Write, 0, 0).done, 75 + 100);
+    assert_eq!(c.access(&model, (2, 1), Read, 0, 0).done, 7 + 7 + 75);
 }
 
 #[test]
 fn small_caches_evict() {
     let (model, mut c) = machine(64);
-    c.access(&model, 0, 0, Write, 0);
-    c.access(&model, 0, 4, Read, 1000);
-    assert_eq!(c.access(&model, 0, 0, Read, 2000).done - 2000, 8, "out of the first level only");
-    c.access(&model, 0, 8, Read, 3000);
-    assert_eq!(c.access(&model, 0, 0, Read, 4000).done - 4000, 75, "out of the second level");
+    c.access(&model, (0, 0), Write, 0, 0);
+    c.access(&model, (0, 4), Read, 1000, 0);
+    assert_eq!(c.access(&model, (0, 0), Read, 2000, 0).done - 2000, 8, "out of the first level only");
+    c.access(&model, (0, 8), Read, 3000, 0);
+    assert_eq!(c.access(&model, (0, 0), Read, 4000, 0).done - 4000, 75, "out of the second level");
 }
 
 #[test]
 fn growing_keeps_what_is_cached() {
     let (model, mut c) = machine(4);
-    c.access(&model, 2, 3, Write, 0);
+    c.access(&model, (2, 3), Write, 0, 0);
     c.grow(&model, 1000, 200);
-    assert!(c.access(&model, 2, 3, Write, 1000).hit);
-    assert_eq!(c.access(&model, 150, 3, Read, 2000).done - 2000, 100);
+    assert!(c.access(&model, (2, 3), Write, 1000, 0).hit);
+    assert_eq!(c.access(&model, (150, 3), Read, 2000, 0).done - 2000, 100);
 }

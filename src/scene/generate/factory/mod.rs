@@ -121,9 +121,17 @@ impl Plan {
     }
 
     fn aisles(&self) -> Aisles {
-        let z = (0..=self.lines.len()).map(|line| self.line_z(line) - self.pitch * 0.5).collect();
         let (length, width) = self.size();
-        Aisles { x: vec![3.0, self.middle_aisle(), self.last_aisle()], z, far: (length + width).ceil() }
+        let far = (length + width).ceil();
+        if self.lines == [1] {
+            // A lone cell is walked right through, past its robots: "the small offers more immersive
+            // navigation" (Paper II, caption of Fig. 1).
+            let (start, z) = (LINE_START, self.line_z(0));
+            let x = [0.1, 0.35, 0.6, 0.85].map(|share| start + share * CELL_LENGTH).to_vec();
+            return Aisles { x, z: vec![z - 1.5, z, z + 1.5], far };
+        }
+        let z = (0..=self.lines.len()).map(|line| self.line_z(line) - self.pitch * 0.5).collect();
+        Aisles { x: vec![3.0, self.middle_aisle(), self.last_aisle()], z, far }
     }
 }
 

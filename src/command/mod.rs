@@ -1,0 +1,62 @@
+//! The command line: thin. Words in, exit code out: 0 done, 1 the run failed, 2 the words were off.
+
+mod list;
+mod print;
+mod progress;
+mod run;
+mod table;
+mod words;
+
+use anyhow::Result;
+use apportion::measure::{MeasureError, inspect};
+use clap::{CommandFactory, Parser};
+use std::io::IsTerminal;
+use std::process::ExitCode;
+use words::{Action, Words};
+
+/// What a shell calls a program ended by Ctrl-C.
+const INTERRUPTED: u8 = 130;
+
+/// Reads the words, does what they say, tells how it went.
+pub(crate) fn main() -> ExitCode {
+    match act(Words::parse().action) {
+        Ok(code) => code,
+        Err(error) if print::is_closed_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("apportion: {error:#}");
+            let usage = error.downcast_ref::<MeasureError>().is_some_and(MeasureError::is_usage);
+            ExitCode::from(if usage { 2 } else { 1 })
+        }
+    }
+}
+
+fn act(action: Action) -> Result<ExitCode> {
+    match action {
+        Action::List => list::list()?,
+        Action::Run(words) => return run::run(&words),
+        Action::Table(words) => table::table(&words)?,
+        Action::Scene { scene } => print::line(&inspect::scene(&scene)?)?,
+        Action::Machine { machine } => {
+            let mut tell = |what: &str| {
+                if std::io::stderr().is_terminal() {
+                    eprintln!("measuring: {what}");
+                }
+            };
+            print::line(&inspect::machine(machine.as_deref(), &mut tell)?)?;
+        }
+        Action::Stress { what, processors, seconds } => {
+            anyhow::bail!("stress {what} {processors} {seconds}: not merged yet");
+        }
+        Action::Completions { shell } => {
+            let mut text = Vec::new();
+            clap_complete::generate(shell, &mut Words::command(), "apportion", &mut text);
+            print::bytes(&text)?;
+        }
+        Action::Man => {
+            let mut text = Vec::new();
+            clap_mangen::Man::new(Words::command()).render(&mut text)?;
+            print::bytes(&text)?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

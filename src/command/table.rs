@@ -1,0 +1,25 @@
+//! `apportion table`.
+
+use super::list::EXPERIMENTS;
+use super::print;
+use super::words::{Format, TableWords};
+use anyhow::Result;
+use apportion::measure::{Known, Shelf};
+use apportion::record::{RunFolder, read_rows};
+use apportion::report;
+use std::path::Path;
+
+/// Where runs are kept, from where the program is started.
+pub(crate) const RESULTS: &str = "results";
+
+/// Prints the table of the newest finished run.
+pub(crate) fn table(words: &TableWords) -> Result<()> {
+    let experiment = Shelf::open(Path::new(EXPERIMENTS))?.load(&words.name, &Known::here())?;
+    let folder = RunFolder::newest_finished(Path::new(RESULTS), &words.name)?;
+    let table = report::table(&read_rows(&folder.rows())?, &experiment.paper);
+    print::table(&table, words.format)?;
+    if words.format == Format::Table {
+        print::line(&format!("from {}", folder.path().display()))?;
+    }
+    Ok(())
+}

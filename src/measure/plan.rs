@@ -1,0 +1,296 @@
+//! From an experiment and the words of the command line to the list of cells.
+
+use super::experiment::SHARED;
+use super::{Experiment, Known, MeasureError, Value, near, processor_list};
+use crate::record::{CellKey, THREADS};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// With `--quick` no more repeats than this: enough for a median.
+const QUICK_REPEATS: u32 = 3;
+
+/// One scheme, with its settings, over one scene, on one machine with so many processors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cell {
+    /// The experiment's name.
+    pub experiment: String,
+    /// The job's word.
+    pub job: String,
+    /// A generator's name or a file's path.
+    pub scene: String,
+    /// The structure built over the scene.
+    pub structure: String,
+    /// The scheme's word.
+    pub scheme: String,
+    /// Settings with their whole keys: `job.work`, `lock_free.receivers`.
+    pub settings: BTreeMap<String, Value>,
+    /// The machine's word.
+    pub machine: String,
+    /// How many processors take part.
+    pub processors: u32,
+}
+
+/// What a run was narrowed to on the command line; kept in `meta.json` for a later `--resume`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Selection {
+    /// Machines; none for the experiment's.
+    pub machines: Vec<String>,
+    /// A list of processor counts for every machine.
+    pub processors: Option<String>,
+    /// Schemes; none for the experiment's. The serial one stays, as every speedup is held against it.
+    pub schemes: Vec<String>,
+    /// A scene in place of the experiment's.
+    pub scene: Option<String>,
+    /// A recorded camera path.
+    pub path: Option<PathBuf>,
+    /// Frames in place of the experiment's.
+    pub frames: Option<u32>,
+    /// The seed of all randomness; 1 where absent.
+    pub seed: Option<u64>,
+    /// Repeats in place of the experiment's.
+    pub repeats: Option<u32>,
+    /// Fewer frames and repeats: to see that it runs, not how fast.
+    pub quick: bool,
+}
+
+/// What holds for all cells of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Frames of the camera path.
+    pub frames: u32,
+    /// Interleaved repeats on real threads.
+    pub repeats: u32,
+    /// The seed of all randomness.
+    pub seed: u64,
+    /// A recorded camera path.
+    pub path: Option<PathBuf>,
+}
+
+/// The cells of a run, each serial one before those that are held against it.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The cells, in the order they run in within a repeat.
+    pub cells: Vec<Cell>,
+    /// What holds for all of them.
+    pub options: Options,
+}
+
+impl Plan {
+    /// The cells an experiment asks for, narrowed by a selection, on a computer with so many cores.
+    ///
+    /// # Errors
+    /// An unknown name, a list that cannot be read, a scene the user has to bring and did not, or no cell left.
+    pub fn new(
+        experiment: &Experiment,
+        selection: &Selection,
+        known: &Known,
+        cores: u32,
+    ) -> Result<Self, MeasureError> {
+        let options = options(experiment, selection)?;
+        let scenes = match &selection.scene {
+            Some(scene) => vec![scene.clone()],
+            None => experiment.scenes.clone(),
+        };
+        if scenes.is_empty() {
+            return Err(MeasureError::Words(format!(
+                "experiment {} needs --scene FILE|NAME",
+                experiment.name
+            )));
+        }
+        let machines = machines(experiment, selection, known)?;
+        let schemes = schemes(experiment, selection, known)?;
+        let mut cells: Vec<Cell> = Vec::new();
+        for (scene, machine) in
+            scenes.iter().flat_map(|scene| machines.iter().map(move |machine| (scene, machine)))
+        {
+            let counts = counts(experiment, selection, machine, cores)?;
+            for settings in combinations(experiment) {
+                for scheme in &schemes {
+                    let counts = if is_serial(scheme) { &[1][..] } else { &counts };
+                    for &processors in counts.iter().filter(|&&count| (known.fits)(scheme, machine, count)) {
+                        let cell = Cell {
+                            experiment: experiment.name.clone(),
+                            job: experiment.job.clone(),
+                            scene: scene.clone(),
+                            structure: experiment.structure.clone(),
+                            scheme: scheme.clone(),
+                            settings: own_settings(&settings, scheme, machine),
+                            machine: machine.clone(),
+                            processors,
+                        };
+                        // A sweep of one scheme's setting repeats the cells of the others.
+                        if !cells.contains(&cell) {
+                            cells.push(cell);
+                        }
+                    }
+                }
+            }
+        }
+        if cells.is_empty() {
+            let message =
+                format!("nothing of experiment {} can run on these machines and processors", experiment.name);
+            return Err(MeasureError::Words(message));
+        }
+        Ok(Self { cells, options })
+    }
+
+    /// The serial cell that a cell's speedup is held against: same scene, machine and settings of the job and machine.
+    pub fn serial_of(&self, cell: &Cell) -> Option<&Cell> {
+        self.cells.iter().find(|other| {
+            is_serial(&other.scheme)
+                && other.processors == 1
+                && (&other.scene, &other.machine) == (&cell.scene, &cell.machine)
+                && other.common_settings().eq(cell.common_settings())
+        })
+    }
+
+    /// How often a cell runs: a simulated machine says the same each time.
+    pub fn repeats(&self, cell: &Cell) -> u32 {
+        if cell.is_simulated() { 1 } else { self.options.repeats }
+    }
+}
+
+impl Cell {
+    /// Whether its machine is a simulated one.
+    pub fn is_simulated(&self) -> bool {
+        self.machine != THREADS
+    }
+
+    /// The settings as rows hold them: `key=value;key=value`, sorted.
+    pub fn settings_text(&self) -> String {
+        let pairs: Vec<String> = self.settings.iter().map(|(key, value)| format!("{key}={value}")).collect();
+        pairs.join(";")
+    }
+
+    /// The key of its rows in a repeat; a scene's file goes by its name, wherever it lies.
+    pub fn key(&self, repeat: u32) -> CellKey {
+        let scene = Path::new(&self.scene).file_name().map(|name| name.to_string_lossy().into_owned());
+        CellKey {
+            experiment: self.experiment.clone(),
+            job: self.job.clone(),
+            scene: scene.unwrap_or_else(|| self.scene.clone()),
+            structure: self.structure.clone(),
+            scheme: self.scheme.clone(),
+            settings: self.settings_text(),
+            machine: self.machine.clone(),
+            processors: self.processors,
+            repeat,
+        }
+    }
+
+    /// Settings that are not a scheme's.
+    fn common_settings(&self) -> impl Iterator<Item = (&String, &Value)> {
+        self.settings.iter().filter(|(key, _)| {
+            let owner = key.split('.').next().unwrap_or_default();
+            owner == self.machine || (owner != "scheme" && SHARED.contains(&owner))
+        })
+    }
+}
+
+impl fmt::Display for Cell {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{} {} on {} x {}", self.scene, self.scheme, self.machine, self.processors)?;
+        if self.settings.is_empty() { Ok(()) } else { write!(out, " ({})", self.settings_text()) }
+    }
+}
+
+fn is_serial(scheme: &str) -> bool {
+    scheme == "serial"
+}
+
+fn options(experiment: &Experiment, selection: &Selection) -> Result<Options, MeasureError> {
+    let quick = selection.quick;
+    let frames = if quick { experiment.quick_frames } else { experiment.frames };
+    let repeats = if quick { experiment.repeats.min(QUICK_REPEATS) } else { experiment.repeats };
+    let options = Options {
+        frames: selection.frames.unwrap_or(frames),
+        repeats: selection.repeats.unwrap_or(repeats),
+        seed: selection.seed.unwrap_or(1),
+        path: selection.path.clone(),
+    };
+    if options.frames == 0 || options.repeats == 0 {
+        return Err(MeasureError::Words("--frames and --repeats start at 1".to_owned()));
+    }
+    Ok(options)
+}
+
+fn machines(
+    experiment: &Experiment,
+    selection: &Selection,
+    known: &Known,
+) -> Result<Vec<String>, MeasureError> {
+    if selection.machines.is_empty() || selection.machines.iter().any(|machine| machine == "all") {
+        return Ok(experiment.machines.clone());
+    }
+    all_known("machine", &selection.machines, &known.machines)?;
+    Ok(selection.machines.clone())
+}
+
+fn schemes(
+    experiment: &Experiment,
+    selection: &Selection,
+    known: &Known,
+) -> Result<Vec<String>, MeasureError> {
+    let mut schemes = experiment.schemes.clone();
+    if !selection.schemes.is_empty() {
+        all_known("scheme", &selection.schemes, &known.schemes)?;
+        schemes.retain(|scheme| is_serial(scheme));
+        schemes.extend(selection.schemes.iter().filter(|scheme| !is_serial(scheme)).cloned());
+    }
+    // Stable: the serial scheme first, the others as listed.
+    schemes.sort_by_key(|scheme| !is_serial(scheme));
+    Ok(schemes)
+}
+
+fn all_known(kind: &'static str, names: &[String], known: &[String]) -> Result<(), MeasureError> {
+    match names.iter().find(|name| !known.contains(name)) {
+        None => Ok(()),
+        Some(name) => {
+            let near = near(name, known.iter().map(String::as_str));
+            Err(MeasureError::Unknown { kind, name: name.clone(), near })
+        }
+    }
+}
+
+fn counts(
+    experiment: &Experiment,
+    selection: &Selection,
+    machine: &str,
+    cores: u32,
+) -> Result<Vec<u32>, MeasureError> {
+    let lists = &experiment.processors;
+    let list = selection.processors.as_ref().or_else(|| lists.get(machine)).or_else(|| lists.get("*"));
+    let list = list.ok_or_else(|| {
+        MeasureError::Words(format!(
+            "experiment {} lists no processors for {machine}: add --processors",
+            experiment.name
+        ))
+    })?;
+    processor_list(list, cores, machine != THREADS).map_err(MeasureError::Words)
+}
+
+/// Every combination of the sweep's values, each with the settings that stay.
+fn combinations(experiment: &Experiment) -> Vec<BTreeMap<String, Value>> {
+    let mut all = vec![experiment.settings.clone()];
+    for (key, values) in &experiment.sweep {
+        let with = |settings: &BTreeMap<String, Value>, value: &Value| {
+            let mut settings = settings.clone();
+            settings.insert(key.clone(), value.clone());
+            settings
+        };
+        all = all.iter().flat_map(|settings| values.iter().map(move |value| with(settings, value))).collect();
+    }
+    all
+}
+
+/// The settings without those of other schemes and machines.
+fn own_settings(settings: &BTreeMap<String, Value>, scheme: &str, machine: &str) -> BTreeMap<String, Value> {
+    let own = |key: &str| {
+        let owner = key.split('.').next().unwrap_or_default();
+        SHARED.contains(&owner) || owner == scheme || owner == machine
+    };
+    settings.iter().filter(|(key, _)| own(key)).map(|(key, value)| (key.clone(), value.clone())).collect()
+}

@@ -1,0 +1,196 @@
+//! What is measured: the way from a cell to the job, scheme and machine it names.
+
+mod cull;
+mod settings;
+mod tree;
+
+use super::{Cell, MeasureError, Options};
+use crate::geometry::Camera;
+use crate::machine::simulated::{Model, ModelError};
+use crate::machine::threads::TeamSettings;
+use crate::machine::{Simulated, Threads};
+use crate::record::THREADS;
+use crate::scene::{self, CameraPath};
+use crate::scheme::tree::SCHEMES;
+use crate::structure::{AabbTree, SkipTree};
+use std::collections::HashMap;
+use std::fmt::Display;
+use std::rc::Rc;
+use std::time::Duration;
+
+/// One number a subject took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sample {
+    /// The metric's name, declared in [`METRICS`](crate::record::METRICS).
+    pub metric: &'static str,
+    /// The frame, from 0; none for a number of the whole camera path.
+    pub frame: Option<u32>,
+    /// The number, in the metric's unit.
+    pub value: f64,
+}
+
+impl Sample {
+    /// A number of one frame.
+    pub(super) fn of_frame(metric: &'static str, frame: usize, value: f64) -> Self {
+        Sample { metric, frame: u32::try_from(frame).ok(), value }
+    }
+
+    /// A number of the whole camera path.
+    pub(super) fn of_path(metric: &'static str, value: f64) -> Self {
+        Sample { metric, frame: None, value }
+    }
+}
+
+/// A cell made ready to run, as often as the plan has repeats.
+pub trait Subject {
+    /// Runs the whole camera path once and returns what it took: a `frame_time` for each frame at least.
+    ///
+    /// # Errors
+    /// The run failed, or its result is not the oracle's.
+    fn sample(&mut self, repeat: u32) -> Result<Vec<Sample>, MeasureError>;
+}
+
+/// The names there are: what experiments and the command line may ask for.
+#[derive(Clone, Debug)]
+pub struct Known {
+    /// Words of the jobs.
+    pub jobs: Vec<String>,
+    /// Words of the schemes.
+    pub schemes: Vec<String>,
+    /// Words of the machines, real and simulated.
+    pub machines: Vec<String>,
+    /// Whether a scheme can run on a machine with so many processors; a plan leaves out what cannot.
+    pub fits: fn(scheme: &str, machine: &str, processors: u32) -> bool,
+}
+
+/// The jobs, by word: how each is made ready. The list is the table of contents.
+type OpenJob = fn(&Cell, &Options, &mut SubjectCache) -> Result<Box<dyn Subject>, MeasureError>;
+const JOBS: &[(&str, OpenJob)] = &[("cull", cull::open), ("tree", tree::open)];
+
+impl Known {
+    /// All that this version knows.
+    pub fn here() -> Self {
+        Self {
+            jobs: JOBS.iter().map(|(word, _)| (*word).to_owned()).collect(),
+            schemes: SCHEMES.iter().map(|scheme| scheme.name.to_owned()).collect(),
+            machines: std::iter::once(THREADS).chain(Model::names()).map(str::to_owned).collect(),
+            fits: |scheme, machine, _| {
+                let native_only = SCHEMES.iter().any(|known| known.name == scheme && known.native_only);
+                machine == THREADS || !native_only
+            },
+        }
+    }
+}
+
+/// What cells share and is dear to make: scenes, structures, camera paths, teams of threads.
+#[derive(Default)]
+pub struct SubjectCache {
+    scenes: HashMap<String, Rc<Stage>>,
+    teams: HashMap<u32, Rc<Threads>>,
+}
+
+/// A scene ready to be gone through: its tree and a camera for each frame.
+struct Stage {
+    tree: SkipTree,
+    cameras: Vec<Camera>,
+}
+
+/// Near and far plane of a recorded path, which does not hold them, as shares of the scene's size.
+const NEAR_SHARE: f32 = 1e-4;
+const FAR_SHARE: f32 = 2.0;
+
+impl SubjectCache {
+    fn stage(&mut self, name: &str, options: &Options) -> Result<Rc<Stage>, MeasureError> {
+        let key = format!("{name} {options:?}");
+        if let Some(stage) = self.scenes.get(&key) {
+            return Ok(stage.clone());
+        }
+        let scene = scene(name)?;
+        let path = match &options.path {
+            Some(file) => {
+                let size = scene.bounds().size().length().max(1e-3);
+                CameraPath::read_csv(file, NEAR_SHARE * size, FAR_SHARE * size).map_err(failed)?
+            }
+            None => CameraPath::for_scene(&scene, options.frames as usize, options.seed),
+        };
+        if path.frames.is_empty() {
+            return Err(MeasureError::Failed(format!("scene `{name}`: the camera path has no frames")));
+        }
+        let tree = SkipTree::build(&AabbTree::build(&scene));
+        tree.validate().map_err(failed)?;
+        let stage = Rc::new(Stage { tree, cameras: path.frames });
+        self.scenes.insert(key, stage.clone());
+        Ok(stage)
+    }
+
+    fn team(&mut self, processors: u32) -> Result<Rc<Threads>, MeasureError> {
+        if let Some(team) = self.teams.get(&processors) {
+            return Ok(team.clone());
+        }
+        let settings = TeamSettings { spin: SPIN, pin_caller: true, ..TeamSettings::default() };
+        let team = Rc::new(Threads::with_settings(processors as usize, &settings).map_err(failed)?);
+        self.teams.insert(processors, team.clone());
+        Ok(team)
+    }
+}
+
+/// How long a measured team spins between frames: longer than the pauses of any experiment here, so
+/// that what is measured is the scheme; `auto` is what one takes where teams fall asleep.
+const SPIN: Duration = Duration::from_millis(20);
+
+/// A scene by a generator's name or from a file.
+///
+/// # Errors
+/// There is none of that name; the file cannot be read or is not what it should be.
+pub(super) fn scene(name: &str) -> Result<scene::Scene, MeasureError> {
+    if name.contains(['.', '/', '\\']) {
+        scene::load(name).map_err(failed)
+    } else {
+        scene::by_name(name).map_err(|error| MeasureError::Words(error.to_string()))
+    }
+}
+
+/// The simulated machine a cell names, with the cell's settings.
+fn simulated(cell: &Cell) -> Result<Simulated, MeasureError> {
+    let mut model = Model::named(&cell.machine).map_err(|error| match error {
+        ModelError::Unknown { .. } => MeasureError::Words(error.to_string()),
+        error => failed(error),
+    })?;
+    let prefix = format!("{}.", cell.machine);
+    for (key, value) in &cell.settings {
+        let Some(constant) = key.strip_prefix("machine.").or_else(|| key.strip_prefix(&prefix)) else {
+            continue;
+        };
+        let number = value
+            .number()
+            .ok_or_else(|| MeasureError::Words(format!("setting `{key}` is `{value}`, expected a number")))?;
+        model.set(constant, number).map_err(|error| MeasureError::Words(error.to_string()))?;
+    }
+    Ok(Simulated::new(model))
+}
+
+/// How much more than the mean the busiest processor visited, per cent of the mean.
+fn load_imbalance(visited: impl ExactSizeIterator<Item = u64> + Clone) -> f64 {
+    let processors = visited.len() as f64;
+    let (total, most) = (visited.clone().sum::<u64>(), visited.max().unwrap_or(0));
+    if total == 0 { 0.0 } else { 100.0 * (most as f64 * processors / total as f64 - 1.0) }
+}
+
+fn failed(error: impl Display) -> MeasureError {
+    MeasureError::Failed(error.to_string())
+}
+
+/// Makes a cell ready to run.
+///
+/// # Errors
+/// The cell's job, scene, scheme, settings or machine cannot be had.
+pub fn open(
+    cell: &Cell,
+    options: &Options,
+    cache: &mut SubjectCache,
+) -> Result<Box<dyn Subject>, MeasureError> {
+    match JOBS.iter().find(|(word, _)| *word == cell.job) {
+        Some((_, open)) => open(cell, options, cache),
+        None => Err(MeasureError::Words(format!("there is no job `{}`", cell.job))),
+    }
+}

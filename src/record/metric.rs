@@ -1,0 +1,83 @@
+//! The list of metrics: each is declared here, once, with its name, its unit and a sentence.
+
+/// Which way a metric is better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Better {
+    /// More is better: a speedup.
+    Higher,
+    /// Less is better: a time.
+    Lower,
+}
+
+/// A metric: what a row's number means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Metric {
+    /// The word in the column `metric`.
+    pub name: &'static str,
+    /// The word in the column `unit`.
+    pub unit: &'static str,
+    /// Which way is better.
+    pub better: Better,
+    /// What it is, in a sentence.
+    pub sentence: &'static str,
+}
+
+/// The metric of that name.
+pub fn metric(name: &str) -> Option<&'static Metric> {
+    METRICS.iter().find(|metric| metric.name == name)
+}
+
+const fn declare(name: &'static str, unit: &'static str, better: Better, sentence: &'static str) -> Metric {
+    Metric { name, unit, better, sentence }
+}
+
+/// Every metric there is.
+pub const METRICS: &[Metric] = {
+    use Better::{Higher, Lower};
+    &[
+        declare(
+            "frame_time",
+            "ns",
+            Lower,
+            "Time from giving a frame to the scheme to its last processor done.",
+        ),
+        declare("frame_time_p50", "ns", Lower, "Half of the cell's frames took no longer."),
+        declare("frame_time_p90", "ns", Lower, "Nine tenths of the cell's frames took no longer."),
+        declare("frame_time_p99", "ns", Lower, "99 in 100 of the cell's frames took no longer."),
+        declare("frame_time_max", "ns", Lower, "The cell's slowest frame."),
+        declare("total_time", "ns", Lower, "The sum of the cell's frame times."),
+        declare("speedup", "x", Higher, "Serial total time over this cell's, both of the same repeat."),
+        declare(
+            "speedup_self",
+            "x",
+            Higher,
+            "The scheme's own total time on one processor over this cell's, both of the same repeat.",
+        ),
+        declare(
+            "load_imbalance",
+            "%",
+            Lower,
+            "How much longer the busiest processor worked than the mean of all, as a share of the mean.",
+        ),
+        declare(
+            "traversal_share",
+            "%",
+            Lower,
+            "Share of the processors' time that went into finding and handing over work, not into the work itself.",
+        ),
+        declare("nodes_visited", "nodes", Lower, "Nodes of the structure the job looked at."),
+        declare("nodes_visible", "nodes", Higher, "Leaf nodes found visible."),
+        declare(
+            "lost_time",
+            "%",
+            Lower,
+            "Share of one core that other work took away, seen by spinning on the clock just before the cell.",
+        ),
+        declare(
+            "cell_complete",
+            "rows",
+            Higher,
+            "The cell's last row: how many rows it has before this one.",
+        ),
+    ]
+};

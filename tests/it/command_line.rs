@@ -1,0 +1,112 @@
+//! The program as a user meets it: words, exit codes, bad weather.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Runs the program in a folder.
+fn apportion(folder: &Path, words: &[&str]) -> Output {
+    let output = Command::new(env!("CARGO_BIN_EXE_apportion")).args(words).current_dir(folder).output();
+    output.expect("the program starts")
+}
+
+fn out(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// What it said on standard error, and that it ended with this code.
+#[track_caller]
+fn refused(folder: &Path, words: &[&str], code: i32) -> String {
+    let output = apportion(folder, words);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{words:?}: {said}");
+    assert!(output.stdout.is_empty(), "{words:?} printed {}", out(&output));
+    assert!(!said.contains("panicked"), "{said}");
+    said
+}
+
+fn empty() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+#[test]
+fn lists_the_experiments_from_anywhere() {
+    let folder = empty();
+    let output = apportion(folder.path(), &["list"]);
+    assert!(output.status.success());
+    let line = out(&output).lines().find(|line| line.starts_with("cull-large")).map(str::to_owned);
+    assert!(line.is_some_and(|line| line.contains("Paper II, Fig. 1a")), "{}", out(&output));
+}
+
+#[test]
+fn an_unknown_experiment_lists_the_near_ones() {
+    let folder = empty();
+    for words in [["run", "cul-large"], ["table", "cul-large"]] {
+        let said = refused(folder.path(), &words, 2);
+        assert!(said.contains("there is no experiment `cul-large`; near ones: cull-large"), "{said}");
+    }
+    assert!(!folder.path().join("results").exists(), "nothing is written for words that are off");
+}
+
+#[test]
+fn words_that_are_off_end_with_two() {
+    let folder = empty();
+    for (words, expected) in [
+        (&["run", "cull-large", "--processors", "0"][..], "from 1 to 4096"),
+        (&["run", "cull-large", "--processors", "10000"], "from 1 to 4096"),
+        (&["run", "cull-large", "--machine", "threads", "--processors", "257"], "from 1 to 256"),
+        (&["run", "cull-large", "--processors", "1-"], "expected a list like `1,2,4-13`"),
+        (&["run", "cull-large", "--scheme", "lockfree"], "near ones: lock_free"),
+        (&["run", "cull-large", "--machine", "e400"], "near ones: e4000"),
+        (&["run", "cull-large", "--frames", "0"], "start at 1"),
+        (&["run"], "NAME"),
+        (&["runn"], "run"),
+        (&["stress", "lock_free", "--processors", "0", "--seconds", "1"], "1..=256"),
+    ] {
+        let said = refused(folder.path(), words, 2);
+        assert!(said.contains(expected), "{words:?}: {said}");
+    }
+    assert!(!folder.path().join("results").exists(), "nothing is written for words that are off");
+}
+
+#[test]
+fn a_malformed_experiment_names_file_and_line() {
+    let folder = empty();
+    let experiments = folder.path().join("experiments");
+    std::fs::create_dir(&experiments).expect("it is made");
+    std::fs::write(experiments.join("bad.toml"), "title = \"x\"\njob = [\n").expect("it is written");
+    let said = refused(folder.path(), &["run", "bad"], 1);
+    assert!(said.contains("bad.toml, line "), "{said}");
+    let listed = apportion(folder.path(), &["list"]);
+    assert_eq!(listed.status.code(), Some(1));
+    assert!(out(&listed).contains("cull-large"), "one bad file does not hide the others");
+}
+
+#[test]
+fn an_unwritable_results_folder_is_named() {
+    let folder = empty();
+    std::fs::write(folder.path().join("results"), "a file where a folder should be").expect("it is written");
+    let said = refused(folder.path(), &["run", "cull-large"], 1);
+    assert!(said.contains("cannot create results/cull-large"), "{said}");
+    let said = refused(folder.path(), &["run", "cull-large", "--out", "/dev/null/x"], 1);
+    assert!(said.contains("cannot create /dev/null/x"), "{said}");
+}
+
+#[test]
+fn nothing_to_resume_or_to_show_is_said() {
+    let folder = empty();
+    let said = refused(folder.path(), &["run", "cull-large", "--resume"], 1);
+    assert!(said.contains("no unfinished run of cull-large in results/cull-large"), "{said}");
+    let said = refused(folder.path(), &["table", "cull-large"], 1);
+    assert!(said.contains("no finished run of cull-large"), "{said}");
+}
+
+#[test]
+fn completions_and_manual_are_printed() {
+    let folder = empty();
+    for (words, expected) in
+        [(&["completions", "bash"][..], "complete"), (&["man"], ".TH apportion"), (&["help"], "stress")]
+    {
+        let output = apportion(folder.path(), words);
+        assert!(output.status.success() && out(&output).contains(expected), "{words:?}");
+    }
+}

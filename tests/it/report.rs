@@ -1,0 +1,121 @@
+//! Tables and charts of a mock run.
+
+use crate::mock;
+use apportion::measure::{Selection, run};
+use apportion::record::{Row, RowLog, read_rows};
+use apportion::report::{speedup_charts, table};
+use std::sync::atomic::AtomicBool;
+
+fn rows() -> Vec<Row> {
+    rows_of(&Selection::default())
+}
+
+fn rows_of(selection: &Selection) -> Vec<Row> {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("rows.jsonl");
+    let (mut log, kept) = RowLog::open(&path).expect("it opens");
+    let plan = mock::plan(&Selection { frames: Some(2), ..selection.clone() });
+    let stop = AtomicBool::new(false);
+    run(&plan, "id", (&mut log, &kept), &mut mock::open, &mut |_| {}, &stop).expect("it runs");
+    read_rows(&path).expect("the log is whole")
+}
+
+#[test]
+fn the_table_holds_the_paper_beside_the_best_setting() {
+    let table = table(&rows(), &mock::experiment().paper);
+    let first = &table.lines[0];
+    let eight = 1.0 / ((0.05 + 0.95 / 8.0) * (1.0 + 0.004 * 7.0));
+    assert_eq!(first.settings, "job.work=300;ring.receivers=2");
+    assert!((first.simulated.expect("it was simulated") - eight).abs() < 1e-9);
+    assert!((first.error_simulated.expect("the paper has it") - (eight / 4.0 - 1.0)).abs() < 1e-9);
+    assert_eq!((first.measured, first.error_measured), (None, None), "threads ran no eight processors");
+    assert_eq!((table.lines[1].processors, table.lines[1].measured.is_some()), (None, true));
+    // Then each cell once: threads stand beside the simulated machine where both ran, stealing has lines of its own.
+    assert_eq!(table.lines.len(), 2 + 40 + 2);
+    let own = table.lines.iter().filter(|line| line.machine == "threads");
+    assert!(own.clone().all(|line| line.scheme == "stealing" && line.simulated.is_none()));
+    assert_eq!(own.count(), 2);
+}
+
+#[test]
+fn csv_and_json_hold_the_same_lines() {
+    let table = table(&rows(), &mock::experiment().paper);
+    let csv = table.csv();
+    let mut lines = csv.lines();
+    assert_eq!(
+        lines.next(),
+        Some(
+            "figure,scheme,settings,scene,machine,processors,metric,unit,paper,simulated,measured,error_simulated,error_measured"
+        )
+    );
+    assert_eq!(lines.count(), table.lines.len());
+    assert!(csv.lines().all(|line| line.matches(',').count() == 12), "{csv}");
+    let json: serde_json::Value = serde_json::from_str(&table.json()).expect("it is JSON");
+    let json = json.as_array().expect("an array");
+    assert_eq!(json.len(), table.lines.len());
+    assert_eq!(json[0]["figure"], "Fig. 1");
+    assert_eq!(json[0]["measured"], serde_json::Value::Null);
+}
+
+#[test]
+fn the_text_says_what_a_reader_looks_for() {
+    let text = table(&rows(), &mock::experiment().paper).text();
+    for part in [
+        "paper | simulated | measured",
+        "peak",
+        "mean absolute error of 2 figures, simulated",
+        "speedup on e4000, box, job.work=300",
+        "speedup on threads, box, job.work=300: median [95 % interval]",
+        "ring receivers=2",
+    ] {
+        assert!(text.contains(part), "no `{part}` in\n{text}");
+    }
+    assert!(text.lines().all(|line| line.len() <= 120), "{text}");
+    assert_eq!(table(&[], &[]).text(), "no rows to show");
+}
+
+#[test]
+fn a_chart_a_machine_with_a_curve_a_scheme() {
+    let experiment = mock::experiment();
+    let charts = speedup_charts(&experiment.title, &rows(), &experiment.paper).expect("they can be drawn");
+    let names: Vec<&str> = charts.iter().map(|chart| chart.file_name.as_str()).collect();
+    assert_eq!(names, ["speedup-e4000-box-job.work-300.svg", "speedup-threads-box-job.work-300.svg"]);
+    if let Some(folder) = std::env::var_os("CHARTS_TO_LOOK_AT") {
+        for chart in &charts {
+            std::fs::write(std::path::Path::new(&folder).join(&chart.file_name), &chart.svg)
+                .expect("it is written");
+        }
+    }
+    let svg = &charts[0].svg;
+    assert!(svg.contains("speedups &lt;known&gt; &amp; exact"), "the title is escaped");
+    for word in ["serial", "queue", "ring", "ideal", "the paper", "processors", "speedup against serial"] {
+        assert!(svg.contains(word), "no `{word}`");
+    }
+    assert!(!svg.contains("NaN") && svg.trim_end().ends_with("</svg>"));
+    // The same rows give the same drawing, byte by byte.
+    let again = speedup_charts(&experiment.title, &rows(), &experiment.paper).expect("they can be drawn");
+    assert_eq!(svg, &again[0].svg);
+}
+
+#[test]
+fn many_processors_stand_on_powers_of_two() {
+    let selection = Selection {
+        machines: vec!["e4000".to_owned()],
+        processors: Some("1,2,8,64,1024".to_owned()),
+        schemes: vec!["ring".to_owned()],
+        ..Selection::default()
+    };
+    let charts = speedup_charts("Many", &rows_of(&selection), &[]).expect("they can be drawn");
+    if let Some(folder) = std::env::var_os("CHARTS_TO_LOOK_AT") {
+        std::fs::write(std::path::Path::new(&folder).join("many.svg"), &charts[0].svg)
+            .expect("it is written");
+    }
+    let labels: Vec<&str> = charts[0].svg.lines().map(str::trim).collect();
+    for count in ["1", "2", "64", "1024"] {
+        assert!(labels.contains(&count), "no {count} on the axis");
+    }
+    // The one parallel scheme has two settings: these are then the question, a curve each.
+    for curve in ["ring receivers=1", "ring receivers=2"] {
+        assert!(labels.contains(&curve), "no {curve} in the legend");
+    }
+}

@@ -56,7 +56,7 @@ pub enum StressError {
 
 /// Everything that can be stressed, besides `all`.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    PRIMITIVES.iter().map(|(name, _)| *name).chain(SCHEMES.iter().map(|(name, _)| *name))
+    PRIMITIVES.iter().map(|(name, _)| *name).chain(SCHEMES.iter().map(|scheme| scheme.name))
 }
 
 /// Stresses the scheme or primitive called `what`, or `all` in turn, on up to `processors` threads until

@@ -97,6 +97,10 @@ fn team() -> MutexGuard<'static, Threads> {
     team.lock().unwrap_or_else(|e| e.into_inner())
 }
 
+fn names() -> impl Iterator<Item = &'static str> {
+    SCHEMES.iter().map(|scheme| scheme.name)
+}
+
 fn e4000() -> Simulated {
     Simulated::new(Model::named("e4000").expect("a preset"))
 }
@@ -131,7 +135,7 @@ fn assert_once(what: &str, tree: &Tree, processors: usize, shares: Vec<Share<Vec
 
 /// Runs every scheme that the machine takes on the tree, several times with the same queues.
 fn check_all<M: Machine>(machine: &M, processors: usize, room: usize, tree: &Tree, runs: usize) {
-    for (name, _) in SCHEMES {
+    for name in names() {
         let Some(mut scheme) = scheme(name, machine, processors, room) else { continue };
         for _ in 0..runs {
             let shares = scheme.run(machine, tree).unwrap_or_else(|e| panic!("{name}: {e}"));
@@ -166,7 +170,7 @@ proptest! {
 
     #[test]
     fn a_seed_fixes_the_run(tree in trees(150), p in 1_usize..=13, seed: u64) {
-        for (name, _) in SCHEMES {
+        for name in names() {
             let run = || {
                 let machine = e4000().disturbed(seed);
                 let mut scheme = scheme(name, &machine, p, 2)?;
@@ -191,7 +195,7 @@ proptest! {
 
 fn survives<M: Machine>(machine: &M, processors: usize, tree: &Tree, rotten: &Tree) {
     let expected = format!("node {} is rotten", rotten.panics.expect("one panics"));
-    for (name, _) in SCHEMES {
+    for name in names() {
         let Some(mut scheme) = scheme(name, machine, processors, 2) else { continue };
         for _ in 0..2 {
             match scheme.run(machine, rotten) {
@@ -248,7 +252,7 @@ fn a_panic_while_a_lock_is_held_or_handed_on_ends_the_run() {
 #[test]
 fn a_panic_ends_runs_under_every_kind_of_lock() {
     let tree = Tree::of((1..200).map(|node| (node - 1) / 4));
-    for (name, _) in SCHEMES {
+    for name in names() {
         for (lock, _) in LockKind::ALL {
             for seed in 0..20 {
                 let machine = e4000().disturbed(seed);
@@ -305,7 +309,7 @@ fn found_sets_are_the_serial_ones() {
     };
     let serial = union("serial");
     assert_eq!(serial.len(), 500);
-    for (name, _) in SCHEMES {
+    for name in names() {
         assert_eq!(union(name), serial, "{name}");
     }
 }
@@ -317,7 +321,7 @@ fn wrong_settings_are_told_apart() {
     match new("lockfree", &[]) {
         Some(SettingError::NoScheme { name, known }) => {
             assert_eq!(name, "lockfree");
-            assert!(SCHEMES.iter().all(|(name, _)| known.contains(name)), "{known}");
+            assert!(names().all(|name| known.contains(name)), "{known}");
         }
         other => panic!("{other:?}"),
     }

@@ -13,6 +13,7 @@ mod plan;
 mod processors;
 mod run;
 mod shelf;
+pub mod stress;
 pub mod subject;
 mod summary;
 mod value;

@@ -129,6 +129,10 @@ impl<M: Machine> Sender<M> {
             room = self.ring.settings.capacity as u64 - (self.tail - self.head);
         }
         let sent = tasks.len().min(room as usize);
+        if sent == 0 {
+            // A store of nothing new would still take the line from the receiver, and wake it.
+            return 0;
+        }
         for &task in &tasks[..sent] {
             // SAFETY: at most `room` slots from `tail` on, which are the sender's.
             unsafe { self.ring.slot(self.tail).write(task) };
@@ -185,6 +189,9 @@ impl<M: Machine> Receiver<M> {
     /// Moves all tasks there are into `into`, giving the slots back at once; returns how many.
     pub fn pop_all(&mut self, into: &mut Vec<u64>) -> usize {
         let found = self.look();
+        if found == 0 {
+            return 0;
+        }
         into.extend((self.head..self.tail).map(|index| {
             // SAFETY: `head <= index < tail`: written, and the receiver's.
             unsafe { self.ring.slot(index).read() }

@@ -101,6 +101,18 @@ impl<M: Machine> Quiescence<M> {
         finished
     }
 
+    /// The word that changes when all is over, for waits other than [`Quiescence::wait`]: a processor
+    /// that shows its last counts may believe an old hint of work, and wait for one who has left.
+    pub fn over(&self) -> &M::Word {
+        &self.over[0]
+    }
+
+    /// Whether all is over.
+    pub fn is_over(&self) -> bool {
+        // ORDERING: Acquire pairs with the Release store in `wait`.
+        self.over().load(Ordering::Acquire) != 0
+    }
+
     /// Takes the published counts back, before a task is taken.
     fn leave(&self, cpu: &M::Processor) {
         // ORDERING: Relaxed: whoever receives a task that this processor sends later, and publishes

@@ -8,4 +8,5 @@ mod record;
 mod report;
 mod run;
 mod scene;
+mod schemes;
 mod structure;

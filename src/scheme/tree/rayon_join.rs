@@ -44,10 +44,13 @@ impl<M: Machine> RayonJoin<M> {
             }
         };
         let count = self.processors;
-        let shares: Shares<W::Found> =
-            (0..count).map(|_| Mutex::new(Share { found: work.found(), visited: 0 })).collect();
-        let whole = || pool.install(|| work.root().into_iter().for_each(|root| down(work, &shares, root)));
-        catch_unwind(AssertUnwindSafe(whole))
+        let whole = || {
+            let share = || Mutex::new(Share { found: work.found(), visited: 0 });
+            let shares: Shares<W::Found> = (0..count).map(|_| share()).collect();
+            pool.install(|| work.root().into_iter().for_each(|root| down(work, &shares, root)));
+            shares
+        };
+        let shares = catch_unwind(AssertUnwindSafe(whole))
             .map_err(|payload| RunError::Panicked { processor: 0, message: panic_message(&*payload) })?;
         Ok(shares.into_iter().map(|share| share.into_inner().expect("no visit panicked")).collect())
     }

@@ -9,7 +9,8 @@
 //! 0); 2. that one looks at its word after each visit, fills the asker's mailbox, publishes the number
 //! of tasks (or [`REFUSED`]) in the asker's answer word, then frees its request word; 3. the asker,
 //! waiting on its answer word, takes the tasks, or asks the next. While it waits it refuses requests
-//! that reach it. When everybody is dry nobody has anything to give: `sync::Quiescence` ends the run.
+//! that reach it. When everybody is dry nobody has anything to give: `sync::Quiescence` ends the run; 4. an
+//! asker gives up when the run is over: going by an old hint, it may have asked one who has left.
 //!
 //! Settings: `mailbox` (tasks handed over at most), `grain` as in `lock_free`.
 
@@ -162,12 +163,17 @@ impl<M: Machine> ReceiverInitiated<M> {
             self.answer(cpu, local);
             return 0;
         }
+        let over = self.quiescence.over();
         loop {
             // ORDERING: Acquire pairs with the Release store in `answer`.
-            let ready = || answer.load(Ordering::Acquire) != 0 || self.is_asked(cpu);
-            cpu.wait_until(&[answer, &self.requests[me]], ready);
+            let ready =
+                || answer.load(Ordering::Acquire) != 0 || self.is_asked(cpu) || self.quiescence.is_over();
+            cpu.wait_until(&[answer, &self.requests[me], over], ready);
             let tasks = answer.load(Ordering::Acquire);
             if tasks == 0 {
+                if self.quiescence.is_over() {
+                    return 0;
+                }
                 // Two that ask each other must both answer.
                 self.answer(cpu, local);
                 continue;

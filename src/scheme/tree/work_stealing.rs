@@ -88,9 +88,11 @@ impl<M: Machine> Deque<M> {
     fn pop(&self) -> Option<u64> {
         // ORDERING: Relaxed: only the owner writes `bottom`.
         let bottom = self.bottom().load(Ordering::Relaxed) - 1;
-        // ORDERING: Relaxed here, ordered against the load of `top` by the fence, which pairs with the
-        // fence in `steal`: of owner and thief at the last task, at least one sees the other.
-        self.bottom().store(bottom, Ordering::Relaxed);
+        // ORDERING: Release pairs with the thief's Acquire load of `bottom`, as in `push`: a thief that
+        // sees this value takes an older task, whose slot was written before. The fence orders the
+        // store against the load of `top` and pairs with the fence in `steal`: of owner and thief at
+        // the last task, at least one sees the other.
+        self.bottom().store(bottom, Ordering::Release);
         M::Word::fence(Ordering::SeqCst);
         let top = self.top().load(Ordering::Relaxed);
         if top > bottom {

@@ -6,6 +6,9 @@ use super::Words;
 use crate::machine::{Processor, Word};
 use std::sync::atomic::Ordering;
 
+/// How often a processor that is being unwound looks for its successor.
+const UNWINDING_LOOKS: u32 = 1000;
+
 pub(super) fn words(processors: usize) -> usize {
     1 + 2 * processors
 }
@@ -38,6 +41,21 @@ pub(super) fn release<P: Processor>(words: Words<'_, P::Word>, cpu: &P) {
             return;
         }
         // Somebody has drawn us as predecessor and is about to say so.
+        if std::thread::panicking() {
+            // This processor is being unwound out of a failed run: a wait could unwind once more, which
+            // would abort the program, or be for one who never runs again. So the wait has an end; if
+            // nobody shows up, the lock stays held, and the failure ends those who wait for it.
+            // ORDERING: Acquire, as above.
+            for _ in 0..UNWINDING_LOOKS {
+                if behind.load(Ordering::Acquire) != 0 {
+                    break;
+                }
+                std::thread::yield_now();
+            }
+            if behind.load(Ordering::Acquire) == 0 {
+                return;
+            }
+        }
         // ORDERING: Acquire, as above.
         cpu.wait_until(&[behind], || behind.load(Ordering::Acquire) != 0);
     }

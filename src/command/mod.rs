@@ -4,6 +4,7 @@ mod list;
 mod print;
 mod progress;
 mod run;
+mod stress;
 mod table;
 mod words;
 
@@ -45,7 +46,7 @@ fn act(action: Action) -> Result<ExitCode> {
             print::line(&inspect::machine(machine.as_deref(), &mut tell)?)?;
         }
         Action::Stress { what, processors, seconds } => {
-            anyhow::bail!("stress {what} {processors} {seconds}: not merged yet");
+            stress::stress(&what, processors, seconds)?;
         }
         Action::Completions { shell } => {
             let mut text = Vec::new();

@@ -80,18 +80,7 @@ impl<M: Machine> Quiescence<M> {
             }
             return finished;
         }
-        watched.extend(self.published.iter().skip(1));
-        let mut finished = false;
-        cpu.wait_until(&watched, || {
-            if has_work() {
-                return true;
-            }
-            finished = match self.sum() {
-                Some(first) => self.sum() == Some(first),
-                None => false,
-            };
-            finished
-        });
+        let finished = self.wait_for_all(cpu, &watched, &mut has_work);
         if finished {
             // ORDERING: Release pairs with the Acquire load above.
             over.store(1, Ordering::Release);
@@ -99,6 +88,51 @@ impl<M: Machine> Quiescence<M> {
             self.leave(cpu);
         }
         finished
+    }
+
+    /// Processor 0's wait: for work (`false`), or until all is over (`true`). As long as it knows of one
+    /// that is busy it watches that one alone, so that a thousand processors running dry one after the
+    /// other do not each wake it to look at all the others.
+    fn wait_for_all(
+        &self,
+        cpu: &M::Processor,
+        arrivals: &[&M::Word],
+        has_work: &mut impl FnMut() -> bool,
+    ) -> bool {
+        let (mut suspect, mut work, mut finished) = (0, false, false);
+        while !work && !finished {
+            if let Some(busy) = self.someone_busy(suspect) {
+                suspect = busy;
+                let word = &self.published[busy];
+                let watched: Vec<&M::Word> = arrivals.iter().copied().chain([word]).collect();
+                cpu.wait_until(&watched, || {
+                    work = has_work();
+                    // ORDERING: Relaxed: a hint; `sum` decides.
+                    work || word.load(Ordering::Relaxed) != BUSY
+                });
+                continue;
+            }
+            let watched: Vec<&M::Word> = arrivals.iter().copied().chain(self.published.iter()).collect();
+            cpu.wait_until(&watched, || {
+                work = has_work();
+                if work || self.someone_busy(suspect).is_some() {
+                    return true;
+                }
+                finished = match self.sum() {
+                    Some(first) => self.sum() == Some(first),
+                    None => false,
+                };
+                finished
+            });
+        }
+        finished
+    }
+
+    /// A processor that shows no counts, from `first` on.
+    fn someone_busy(&self, first: usize) -> Option<usize> {
+        let count = self.published.len();
+        // ORDERING: Relaxed: a hint; `sum` decides.
+        (first..count).chain(0..first).find(|&p| self.published[p].load(Ordering::Relaxed) == BUSY)
     }
 
     /// The word that changes when all is over, for waits other than [`Quiescence::wait`]: a processor

@@ -28,6 +28,7 @@ mod global_counter;
 mod global_queue;
 mod hybrid;
 mod lock_free;
+mod neighbours;
 mod rayon_join;
 mod receiver_initiated;
 mod serial;

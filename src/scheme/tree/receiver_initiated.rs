@@ -14,6 +14,7 @@
 //!
 //! Settings: `mailbox` (tasks handed over at most), `grain` as in `lock_free`.
 
+use super::neighbours::neighbours;
 use super::{Share, Task, TreeWork};
 use crate::machine::{Layout, Machine, Processor, RunError, Seats, Shared, Slot, Word};
 use crate::scheme::{SettingError, Settings};
@@ -110,9 +111,8 @@ impl<M: Machine> ReceiverInitiated<M> {
     }
 
     fn watched<'a>(&'a self, cpu: &M::Processor) -> impl Iterator<Item = &'a M::Word> {
-        let me = cpu.id();
-        let others = self.rich.iter().enumerate().filter(move |(p, _)| *p != me).map(|(_, word)| word);
-        others.chain([&self.requests[me]])
+        let others = neighbours(cpu.id(), cpu.count()).map(|other| &self.rich[other]);
+        others.chain([&self.requests[cpu.id()]])
     }
 
     fn is_asked(&self, cpu: &M::Processor) -> bool {
@@ -120,11 +120,10 @@ impl<M: Machine> ReceiverInitiated<M> {
         self.requests[cpu.id()].load(Ordering::Relaxed) != 0
     }
 
-    /// The next processor after this one that says it has tasks to give.
+    /// A neighbour that says it has tasks to give.
     fn someone_rich(&self, cpu: &M::Processor) -> Option<usize> {
-        let (me, count) = (cpu.id(), cpu.count());
         // ORDERING: Relaxed: a hint.
-        (1..count).map(|i| (me + i) % count).find(|&p| self.rich[p].load(Ordering::Relaxed) != 0)
+        neighbours(cpu.id(), cpu.count()).find(|&p| self.rich[p].load(Ordering::Relaxed) != 0)
     }
 
     /// Answers a request, if there is one, with half of the local queue; returns the tasks handed over.

@@ -12,6 +12,7 @@
 //!
 //! Settings: `capacity` of a deque, `layout`, `grain` as in `lock_free`.
 
+use super::neighbours::neighbours;
 use super::{Share, Task, TreeWork};
 use crate::machine::{Layout, Machine, Processor, RunError, Seats, Shared, Word};
 use crate::scheme::{SettingError, Settings};
@@ -187,7 +188,7 @@ impl<M: Machine> WorkStealing<M> {
     /// Steals from somebody, waiting for a chance; `None` when all is over.
     fn find(&self, cpu: &M::Processor) -> Option<u64> {
         let (me, count, idle) = (cpu.id(), cpu.count(), &self.idle[0]);
-        let victims = || (1..count).map(|i| &self.deques[(me + i) % count]);
+        let victims = || neighbours(me, count).map(|victim| &self.deques[victim]);
         let mut watched: Vec<&M::Word> = victims().map(Deque::bottom).collect();
         watched.push(idle);
         // ORDERING: AcqRel here and below: whoever sees everybody idle comes after all their work.

@@ -99,6 +99,16 @@ impl<T> Shared<T> {
         unsafe { self.first.as_ptr().add(i * self.stride).cast() }
     }
 
+    /// The values, which lie side by side.
+    ///
+    /// # Panics
+    /// If they do not: the layout padded them.
+    pub fn as_slice(&self) -> &[T] {
+        assert_eq!(self.stride, size_of::<T>(), "padded values are no slice");
+        // SAFETY: the block holds `len` values, `stride` apart, which is the distance in a slice.
+        unsafe { std::slice::from_raw_parts(self.first.as_ptr().cast(), self.len) }
+    }
+
     /// How many values there are.
     pub fn len(&self) -> usize {
         self.len
@@ -146,6 +156,7 @@ impl<T> std::fmt::Debug for Shared<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::panic::AssertUnwindSafe;
 
     #[test]
     fn layouts_set_the_stride() {
@@ -157,6 +168,8 @@ mod tests {
         assert_eq!(at(&padded, 1) - at(&padded, 0), LINE);
         assert_eq!(at(&packed, 0) % LINE, 0);
         assert_eq!(padded.iter().copied().collect::<Vec<_>>(), [0, 1, 2]);
+        assert_eq!(packed.as_slice(), [0, 1, 2]);
+        assert!(std::panic::catch_unwind(AssertUnwindSafe(|| padded.as_slice().len())).is_err());
     }
 
     #[test]

@@ -13,9 +13,16 @@
 //! other's index and looks again only when the ring seems full or empty, so that the indices' lines
 //! move seldom (`remember_index = false` looks every time, as one wrote it in 1999).
 
-use crate::machine::{Layout, Machine, Shared, Slot, Word};
+use crate::machine::{Layout, Machine, Slot, Word};
+use std::hint::black_box;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+
+mod ring;
+use ring::{HEAD, Hold, Ring, TAIL};
+
+/// How many slots [`Receiver::pop_all`] gives back at once: few enough that the sender goes on meanwhile.
+const GIVE_BACK: usize = 128;
 
 /// How a ring is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,30 +38,6 @@ pub struct RingSettings {
 impl Default for RingSettings {
     fn default() -> Self {
         RingSettings { capacity: 64, layout: Layout::Padded, remember_index: true }
-    }
-}
-
-struct Ring<M: Machine> {
-    /// Word 0: `head`, written by the receiver. Word 1: `tail`, written by the sender.
-    indices: Shared<M::Word>,
-    slots: Shared<M::Slot<u64>>,
-    /// Number of slots minus one; the number is a power of two, at least the capacity.
-    mask: u64,
-    settings: RingSettings,
-}
-
-impl<M: Machine> Ring<M> {
-    fn head(&self) -> &M::Word {
-        &self.indices[0]
-    }
-
-    fn tail(&self) -> &M::Word {
-        &self.indices[1]
-    }
-
-    #[inline]
-    fn slot(&self, index: u64) -> &M::Slot<u64> {
-        &self.slots[(index & self.mask) as usize]
     }
 }
 
@@ -77,69 +60,76 @@ pub fn in_queue<M: Machine>(machine: &M, settings: RingSettings) -> (Sender<M>, 
     let ring = Arc::new(Ring {
         indices: machine.alloc(2, settings.layout, |_| Word::new(0)),
         slots: machine.alloc(size, Layout::Packed, |_| Slot::new(0)),
-        mask: size as u64 - 1,
         settings,
     });
-    (Sender { ring: ring.clone(), tail: 0, head: 0 }, Receiver { ring, head: 0, tail: 0 })
+    let sender = Sender { hold: Hold::new(ring.clone(), TAIL, HEAD), tail: 0, limit: 0, head: 0 };
+    (sender, Receiver { hold: Hold::new(ring, HEAD, TAIL), head: 0, limit: 0, tail: 0 })
 }
 
 /// The sending end. There is one a ring.
+///
+/// Invariant: `tail <= limit <= head + capacity`.
 pub struct Sender<M: Machine> {
-    ring: Arc<Ring<M>>,
+    hold: Hold<M>,
     /// What the shared `tail` holds; only this end writes it.
     tail: u64,
+    /// Slots below are this end's; here it looks again.
+    limit: u64,
     /// The newest `head` seen; the true one is the same or greater.
     head: u64,
 }
 
 impl<M: Machine> Sender<M> {
-    /// How many tasks fit in now, looked up anew if none seems to.
+    /// Looks up how far the receiver has come; returns how many tasks fit in now.
     #[inline]
-    fn room(&mut self) -> u64 {
-        let capacity = self.ring.settings.capacity as u64;
-        if self.tail - self.head >= capacity || !self.ring.settings.remember_index {
-            // ORDERING: Acquire pairs with the receiver's Release store of `head`: it has read the
-            // slots before that index, so they may be written again.
-            self.head = self.ring.head().load(Ordering::Acquire);
-        }
-        capacity - (self.tail - self.head)
+    fn look(&mut self) -> u64 {
+        // ORDERING: Acquire pairs with the receiver's Release store of `head`: it has read the
+        // slots before that index, so they may be written again.
+        self.head = self.hold.other().load(Ordering::Acquire);
+        let room = self.head + self.hold.ring.settings.capacity as u64 - self.tail;
+        self.limit = self.tail + room.min(self.hold.memory);
+        room
     }
 
     /// Sends a task; says whether there was room for it.
     #[inline]
     pub fn push(&mut self, task: u64) -> bool {
-        if self.room() == 0 {
+        if self.tail == self.limit && self.look() == 0 {
             return false;
         }
-        // SAFETY: `tail - head < capacity`, so this slot is the sender's.
-        unsafe { self.ring.slot(self.tail).write(task) };
+        // SAFETY: `tail < limit <= head + capacity`, so this slot is the sender's.
+        unsafe { self.hold.slot(self.tail).write(task) };
         self.tail += 1;
         // ORDERING: Release pairs with the receiver's Acquire load of `tail`: the slot is written.
-        self.ring.tail().store(self.tail, Ordering::Release);
+        self.hold.own().store(self.tail, Ordering::Release);
         true
     }
 
     /// Sends as many of `tasks` as there is room for, from the first on, publishing them at once;
     /// returns how many.
+    #[inline]
     pub fn push_all(&mut self, tasks: &[u64]) -> usize {
-        let mut room = self.room();
+        let mut room = self.limit - self.tail;
         if room < tasks.len() as u64 {
-            // ORDERING: Acquire, as in `room`.
-            self.head = self.ring.head().load(Ordering::Acquire);
-            room = self.ring.settings.capacity as u64 - (self.tail - self.head);
+            room = self.look();
         }
         let sent = tasks.len().min(room as usize);
         if sent == 0 {
             // A store of nothing new would still take the line from the receiver, and wake it.
             return 0;
         }
-        for &task in &tasks[..sent] {
-            // SAFETY: at most `room` slots from `tail` on, which are the sender's.
-            unsafe { self.ring.slot(self.tail).write(task) };
-            self.tail += 1;
+        let [first, second] = self.hold.stretches(self.tail, sent);
+        let (tasks, rest) = tasks[..sent].split_at(first.len());
+        for (slots, tasks) in [(first, tasks), (second, rest)] {
+            for (slot, &task) in slots.iter().zip(tasks) {
+                // SAFETY: one of at most `room` slots from `tail` on, which are the sender's.
+                unsafe { slot.write(task) };
+            }
         }
+        self.tail += sent as u64;
+        self.limit = self.limit.max(self.tail);
         // ORDERING: Release, as in `push`.
-        self.ring.tail().store(self.tail, Ordering::Release);
+        self.hold.own().store(self.tail, Ordering::Release);
         sent
     }
 
@@ -155,10 +145,14 @@ impl<M: Machine> Sender<M> {
 }
 
 /// The receiving end. There is one a ring.
+///
+/// Invariant: `head <= limit <= tail`.
 pub struct Receiver<M: Machine> {
-    ring: Arc<Ring<M>>,
+    hold: Hold<M>,
     /// What the shared `head` holds; only this end writes it.
     head: u64,
+    /// Slots below are this end's; here it looks again.
+    limit: u64,
     /// The newest `tail` seen; the true one is the same or greater.
     tail: u64,
 }
@@ -168,49 +162,59 @@ impl<M: Machine> Receiver<M> {
     #[inline]
     pub fn look(&mut self) -> usize {
         // ORDERING: Acquire pairs with the sender's Release store of `tail`: the slots are written.
-        self.tail = self.ring.tail().load(Ordering::Acquire);
-        (self.tail - self.head) as usize
+        self.tail = self.arrivals().load(Ordering::Acquire);
+        self.limit = self.head + (self.tail - self.head).min(self.hold.memory);
+        self.len()
     }
 
     /// Takes the oldest task.
     #[inline]
     pub fn pop(&mut self) -> Option<u64> {
-        if (self.head == self.tail || !self.ring.settings.remember_index) && self.look() == 0 {
+        if self.head == self.limit && self.look() == 0 {
             return None;
         }
-        // SAFETY: `head < tail`, so this slot is written and the receiver's.
-        let task = unsafe { self.ring.slot(self.head).read() };
-        self.head += 1;
+        // SAFETY: `head < limit <= tail`, so this slot is written and the receiver's.
+        let task = unsafe { self.hold.slot(self.head).read() };
+        // Kept in memory, which paces the loop around a `pop` by a few cycles. In a register it outruns
+        // any sender and then lives at the ring's empty end, where each look at `tail` takes that line
+        // away from the sender: item by item both sides lose about a third (`benches/in_queue.rs`).
+        *black_box(&mut self.head) += 1;
         // ORDERING: Release pairs with the sender's Acquire load of `head`: the slot has been read.
-        self.ring.head().store(self.head, Ordering::Release);
+        self.hold.own().store(self.head, Ordering::Release);
         Some(task)
     }
 
-    /// Moves all tasks there are into `into`, giving the slots back at once; returns how many.
+    /// Moves all tasks there are into `into`, giving their slots back as it goes; returns how many.
+    #[inline]
     pub fn pop_all(&mut self, into: &mut Vec<u64>) -> usize {
         let found = self.look();
         if found == 0 {
             return 0;
         }
-        into.extend((self.head..self.tail).map(|index| {
-            // SAFETY: `head <= index < tail`: written, and the receiver's.
-            unsafe { self.ring.slot(index).read() }
-        }));
-        self.head = self.tail;
-        // ORDERING: Release, as in `pop`.
-        self.ring.head().store(self.head, Ordering::Release);
+        into.reserve(found);
+        for stretch in self.hold.stretches(self.head, found) {
+            for slots in stretch.chunks(GIVE_BACK) {
+                // SAFETY: slots from `head` up to `tail`: written, and the receiver's.
+                into.extend(slots.iter().map(|slot| unsafe { slot.read() }));
+                self.head += slots.len() as u64;
+                // ORDERING: Release, as in `pop`.
+                self.hold.own().store(self.head, Ordering::Release);
+            }
+        }
+        self.limit = self.tail;
         found
     }
 
     /// The word whose change means that a task has come.
+    #[inline]
     pub fn arrivals(&self) -> &M::Word {
-        self.ring.tail()
+        self.hold.other()
     }
 
     /// Whether there are tasks that have not been taken.
     pub fn has_arrivals(&self) -> bool {
         // ORDERING: Relaxed: only `pop` and `look` follow up on it, with Acquire.
-        self.ring.tail().load(Ordering::Relaxed) != self.head
+        self.arrivals().load(Ordering::Relaxed) != self.head
     }
 
     /// Tasks seen and not yet taken: a look at this end's own memory only.

@@ -118,3 +118,24 @@ pub(crate) fn align(cells: &[Vec<String>], left: usize) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Curve, label};
+
+    #[test]
+    fn a_label_tells_what_differs_and_no_more() {
+        let curve = |scheme: &str, settings: &str| Curve {
+            scheme: scheme.to_owned(),
+            settings: settings.to_owned(),
+            points: Default::default(),
+        };
+        let all = [
+            curve("lock_free", "lock_free.layout=1999;lock_free.receivers=1"),
+            curve("lock_free", "lock_free.layout=1999;lock_free.receivers=4"),
+            curve("hybrid", "hybrid.threshold=6"),
+        ];
+        let labels = all.each_ref().map(|curve| label(curve, &all));
+        assert_eq!(labels, ["lock_free receivers=1", "lock_free receivers=4", "hybrid"]);
+    }
+}

@@ -66,7 +66,7 @@ fn the_text_says_what_a_reader_looks_for() {
         "mean absolute error of 2 figures, simulated",
         "speedup on e4000, box, job.work=300",
         "speedup on threads, box, job.work=300: median [95 % interval]",
-        "\nring  ",
+        "ring receivers=2",
     ] {
         assert!(text.contains(part), "no `{part}` in\n{text}");
     }

@@ -24,11 +24,18 @@ pub(crate) fn main() -> ExitCode {
         Ok(code) => code,
         Err(error) if print::is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("apportion: {error:#}");
+            eprintln!("apportion: {}", told(&error));
             let usage = error.downcast_ref::<MeasureError>().is_some_and(MeasureError::is_usage);
             ExitCode::from(if usage { 2 } else { 1 })
         }
     }
+}
+
+/// The error and its causes, without those that the message before them tells already.
+fn told(error: &anyhow::Error) -> String {
+    error.chain().skip(1).map(ToString::to_string).fold(error.to_string(), |told, cause| {
+        if told.ends_with(&cause) { told } else { format!("{told}: {cause}") }
+    })
 }
 
 fn act(action: Action) -> Result<ExitCode> {

@@ -11,6 +11,7 @@ use apportion::measure::{
 };
 use apportion::record::{Host, Meta, RowLog, RunFolder, export_csv, read_rows, run_id, utc_now, write_whole};
 use apportion::report::{self, Table};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -24,7 +25,7 @@ pub(crate) fn run(words: &RunWords) -> Result<ExitCode> {
     let prepared: Vec<Prepared> = prepared.collect::<Result<_>>()?;
     let stop = stop_on_interrupt()?;
     let mut together = Table::default();
-    for one in prepared {
+    for mut one in prepared {
         let folder = one.folder()?;
         if let Ending::Stopped { left } = one.go(&folder, &stop)? {
             let place = folder.path().display();
@@ -61,6 +62,8 @@ struct Prepared {
     text: String,
     selection: Selection,
     plan: Plan,
+    /// Scenes that checking the words has opened already.
+    cache: SubjectCache,
     /// The folder a new run was told to use.
     out: Option<PathBuf>,
     resumed: Option<RunFolder>,
@@ -89,7 +92,11 @@ impl Prepared {
             }
         };
         let plan = Plan::new(&experiment, &selection, known, Host::here().cores)?;
-        Ok(Self { experiment, text, selection, plan, out, resumed })
+        let mut cache = SubjectCache::default();
+        if resumed.is_none() {
+            open_each_kind(&plan, &mut cache)?;
+        }
+        Ok(Self { experiment, text, selection, plan, cache, out, resumed })
     }
 
     /// The folder to run in: the one taken up, or a new one that says what is run.
@@ -119,16 +126,15 @@ impl Prepared {
         Ok(folder)
     }
 
-    fn go(&self, folder: &RunFolder, stop: &AtomicBool) -> Result<Ending> {
+    fn go(&mut self, folder: &RunFolder, stop: &AtomicBool) -> Result<Ending> {
         let mut meta = Meta::read(&folder.meta())?;
         let (mut log, kept) = RowLog::open(&folder.rows())?;
-        let mut cache = SubjectCache::default();
         let bar = Bar::new(&self.experiment.name);
         let ending = measure::run(
             &self.plan,
             &meta.run,
             (&mut log, &kept),
-            &mut |cell, options| subject::open(cell, options, &mut cache),
+            &mut |cell, options| subject::open(cell, options, &mut self.cache),
             &mut |progress| bar.show(progress),
             stop,
         );
@@ -161,6 +167,18 @@ impl Prepared {
         }
         Ok(table)
     }
+}
+
+/// Opens one cell for each scene and scheme: a scene that cannot be read or a setting that is off must not leave a
+/// folder behind that `--resume` would take up.
+fn open_each_kind(plan: &Plan, cache: &mut SubjectCache) -> Result<()> {
+    let mut seen = HashSet::new();
+    for cell in &plan.cells {
+        if seen.insert((&cell.scene, &cell.scheme)) {
+            subject::open(cell, &plan.options, cache)?;
+        }
+    }
+    Ok(())
 }
 
 /// The selection a run was begun with; words that say otherwise are refused, as one run asks one question.

@@ -82,7 +82,7 @@ pub(crate) struct RunWords {
     #[arg(required = true, value_name = "NAME")]
     pub(crate) names: Vec<String>,
     /// Machines in place of the experiment's; `all` for the experiment's.
-    #[arg(long, value_name = "threads|e4000|...", value_delimiter = ',')]
+    #[arg(long, value_name = "threads|e4000|FILE.toml|...", value_delimiter = ',')]
     machine: Vec<String>,
     /// Processor counts in place of the experiment's, such as 1,2,4-13 or 1-cores.
     #[arg(long, value_name = "LIST")]

@@ -2,6 +2,7 @@
 
 use super::experiment::SHARED;
 use super::{Experiment, Known, MeasureError, Value, near, processor_list};
+use crate::machine::simulated::Model;
 use crate::record::{CellKey, THREADS};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -165,17 +166,20 @@ impl Cell {
         pairs.join(";")
     }
 
-    /// The key of its rows in a repeat; a scene's file goes by its name, wherever it lies.
+    /// The key of its rows in a repeat; a file of a scene or machine goes by its name, wherever it lies.
     pub fn key(&self, repeat: u32) -> CellKey {
-        let scene = Path::new(&self.scene).file_name().map(|name| name.to_string_lossy().into_owned());
+        let named = |place: &str| {
+            let name = Path::new(place).file_name().map(|name| name.to_string_lossy().into_owned());
+            name.unwrap_or_else(|| place.to_owned())
+        };
         CellKey {
             experiment: self.experiment.clone(),
             job: self.job.clone(),
-            scene: scene.unwrap_or_else(|| self.scene.clone()),
+            scene: named(&self.scene),
             structure: self.structure.clone(),
             scheme: self.scheme.clone(),
             settings: self.settings_text(),
-            machine: self.machine.clone(),
+            machine: named(&self.machine),
             processors: self.processors,
             repeat,
         }
@@ -225,7 +229,12 @@ fn machines(
     if selection.machines.is_empty() || selection.machines.iter().any(|machine| machine == "all") {
         return Ok(experiment.machines.clone());
     }
-    all_known("machine", &selection.machines, &known.machines)?;
+    let (files, names): (Vec<_>, Vec<_>) =
+        selection.machines.iter().cloned().partition(|machine| machine.ends_with(".toml"));
+    all_known("machine", &names, &known.machines)?;
+    for file in &files {
+        Model::named(file).map_err(|error| MeasureError::Failed(error.to_string()))?;
+    }
     Ok(selection.machines.clone())
 }
 

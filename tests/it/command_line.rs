@@ -58,6 +58,8 @@ fn words_that_are_off_end_with_two() {
         (&["run", "cull-large", "--scheme", "lockfree"], "near ones: lock_free"),
         (&["run", "cull-large", "--machine", "e400"], "near ones: e4000"),
         (&["run", "cull-large", "--frames", "0"], "start at 1"),
+        (&["run", "cull-large", "--scene", "factory-larg"], "did you mean factory-large"),
+        (&["run", "tree-work", "--scene", "factory-large"], "takes no --scene"),
         (&["run"], "NAME"),
         (&["runn"], "run"),
         (&["stress", "lock_free", "--processors", "0", "--seconds", "1"], "1..=256"),
@@ -79,6 +81,60 @@ fn a_malformed_experiment_names_file_and_line() {
     let listed = apportion(folder.path(), &["list"]);
     assert_eq!(listed.status.code(), Some(1));
     assert!(out(&listed).contains("cull-large"), "one bad file does not hide the others");
+}
+
+#[test]
+fn an_experiment_that_is_no_text_hides_no_other() {
+    let folder = empty();
+    let experiments = folder.path().join("experiments");
+    std::fs::create_dir(&experiments).expect("it is made");
+    std::fs::write(experiments.join("bad.toml"), b"\xff\xfe").expect("it is written");
+    let said = refused(folder.path(), &["run", "bad"], 1);
+    assert_eq!(said.matches("valid UTF-8").count(), 1, "the cause is told once: {said}");
+    refused(folder.path(), &["table", "cull-large"], 1);
+    assert!(out(&apportion(folder.path(), &["list"])).contains("cull-large"));
+}
+
+#[test]
+fn an_unknown_structure_is_refused() {
+    let folder = empty();
+    let experiments = folder.path().join("experiments");
+    std::fs::create_dir(&experiments).expect("it is made");
+    let small = include_str!("../../experiments/cull-small.toml");
+    std::fs::write(experiments.join("odd.toml"), format!("structure = \"bvh9\"\n{small}"))
+        .expect("it is written");
+    let said = refused(folder.path(), &["run", "odd", "--quick"], 1);
+    assert!(said.contains("odd.toml, line 1: there is no structure `bvh9`"), "{said}");
+}
+
+#[test]
+fn a_scene_that_cannot_be_run_leaves_no_folder() {
+    let folder = empty();
+    std::fs::write(folder.path().join("nan.obj"), "v nan 0 0\n").expect("it is written");
+    std::fs::write(folder.path().join("empty.obj"), "").expect("it is written");
+    for (scene, expected) in
+        [("nan.obj", "line 1"), ("empty.obj", "nothing in it"), ("none.glb", "cannot be read")]
+    {
+        let said = refused(folder.path(), &["run", "cull-scene", "--quick", "--scene", scene], 1);
+        assert!(said.contains(expected), "{said}");
+    }
+    assert!(!folder.path().join("results").exists(), "there is nothing to resume");
+}
+
+#[test]
+fn a_machine_may_be_a_file() {
+    let folder = empty();
+    let text = out(&apportion(folder.path(), &["machine", "e4000"]));
+    std::fs::write(folder.path().join("mine.toml"), &text).expect("it is written");
+    std::fs::write(folder.path().join("off.toml"), text.replace("l1_hit", "l1_hits")).expect("it is written");
+    let run = |machine| {
+        ["run", "cull-small", "--quick", "--machine", machine, "--processors", "2", "--scheme", "lock_free"]
+    };
+    let said = refused(folder.path(), &run("off.toml"), 1);
+    assert!(said.contains("off.toml") && said.contains("l1_hits"), "{said}");
+    let output = apportion(folder.path(), &run("mine.toml"));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(out(&output).contains("speedup on mine.toml, factory-small"), "{}", out(&output));
 }
 
 #[test]

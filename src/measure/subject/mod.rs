@@ -114,7 +114,10 @@ impl SubjectCache {
             None => CameraPath::for_scene(&scene, options.frames as usize, options.seed),
         };
         if path.frames.is_empty() {
-            return Err(MeasureError::Failed(format!("scene `{name}`: the camera path has no frames")));
+            return Err(MeasureError::Failed(match &options.path {
+                Some(file) => format!("{}: the camera path has no frames", file.display()),
+                None => format!("scene `{name}`: nothing in it that a camera path could lead past"),
+            }));
         }
         let tree = SkipTree::build(&AabbTree::build(&scene));
         tree.validate().map_err(failed)?;

@@ -12,6 +12,9 @@ use crate::scheme::tree::Scheme;
 use std::borrow::Borrow;
 use std::time::Duration;
 
+/// What its rows call the tree.
+const SCENE: &str = "synthetic";
+
 struct Asked {
     nodes: u32,
     work_ns: std::ops::RangeInclusive<u32>,
@@ -23,6 +26,10 @@ pub(super) fn open(
     options: &Options,
     cache: &mut SubjectCache,
 ) -> Result<Box<dyn Subject>, MeasureError> {
+    if cell.scene != SCENE || options.path.is_some() {
+        let message = "the job `tree` makes its own tree: it takes no --scene and no --path".to_owned();
+        return Err(MeasureError::Words(message));
+    }
     let settings = JobSettings::of(cell);
     let asked = Asked {
         nodes: settings.number("nodes", 4001.0, 0.0..=10_000_000.0)? as u32,

@@ -8,10 +8,11 @@ mod word;
 
 use crate::machine::shared::Heap;
 use crate::machine::{Ended, Layout, Machine, Processor, RunError, Shared, panic_message};
+use core_affinity::CoreId;
 use std::cell::UnsafeCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 use team::Team;
 pub use word::{NativeSlot, NativeWord};
@@ -84,7 +85,22 @@ impl Threads {
 
     /// How many cores this host offers.
     pub fn cores() -> usize {
-        std::thread::available_parallelism().map_or(1, usize::from)
+        cores().len().max(1)
+    }
+}
+
+/// The cores this process may use, as they were when first asked for: a thread that has been pinned since
+/// is told of its own core alone, and a team started from it would crowd there.
+fn cores() -> &'static [CoreId] {
+    static CORES: OnceLock<Vec<CoreId>> = OnceLock::new();
+    CORES.get_or_init(|| core_affinity::get_core_ids().unwrap_or_default())
+}
+
+/// Pins the calling thread to a core of its own, number `index` modulo the cores there are, where the
+/// system allows it. Threads inherit the pinning of who starts them; a rival's must not.
+pub(crate) fn pin(index: usize) {
+    if let Some(&core) = cores().get(index % cores().len().max(1)) {
+        core_affinity::set_for_current(core);
     }
 }
 

@@ -8,6 +8,7 @@
 use super::{MOST, NativeWord, TeamSettings, Thread, now};
 use crate::machine::handoff::Handoff;
 use crate::machine::{Ended, RunError, Word, panic_message};
+use core_affinity::CoreId;
 use crossbeam::utils::CachePadded;
 use std::any::Any;
 use std::cell::UnsafeCell;
@@ -72,7 +73,7 @@ struct Caller {
 impl Team {
     pub(super) fn start(processors: usize, settings: &TeamSettings) -> Result<Self, RunError> {
         debug_assert!((1..=MOST).contains(&processors));
-        let cores = if settings.pin { core_affinity::get_core_ids().unwrap_or_default() } else { Vec::new() };
+        let cores: &[CoreId] = if settings.pin { super::cores() } else { &[] };
         // With a core each, a waiting worker may spin long; with fewer cores it must step aside soon.
         let patience = if processors <= super::Threads::cores() { 1 << 14 } else { 64 };
         let common = Arc::new(Common {

@@ -51,3 +51,22 @@ fn wrong_numbers_and_nesting_are_refused() {
     let nested = team.run(1, |_| team.run(1, |_| ()).is_err()).unwrap();
     assert_eq!(nested, [true]);
 }
+
+#[test]
+fn a_team_started_from_a_pinned_thread_has_the_other_cores_too() {
+    let cores = Threads::cores();
+    // On a thread of its own, which stays pinned.
+    let seen = std::thread::spawn(|| {
+        let settings = TeamSettings { pin_caller: true, ..TeamSettings::default() };
+        let _first = Threads::with_settings(1, &settings).unwrap();
+        let second = Threads::with_settings(2, &settings).unwrap();
+        second.run(2, |_| core_affinity::get_core_ids()).unwrap()
+    });
+    let seen = seen.join().unwrap();
+    if let [Some(caller), Some(helper)] = &seen[..]
+        && cores > 1
+    {
+        assert_ne!(caller, helper, "both were pinned to one core");
+    }
+    assert_eq!(Threads::cores(), cores);
+}

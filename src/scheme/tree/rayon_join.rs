@@ -3,7 +3,7 @@
 //! The tasks below a node are halved until one is left. Rayon's workers park on their own terms.
 
 use super::{Share, Task, TreeWork};
-use crate::machine::threads::Thread;
+use crate::machine::threads::{Thread, pin};
 use crate::machine::{Machine, RunError, panic_message};
 use crate::scheme::{SettingError, Settings};
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -38,7 +38,7 @@ impl<M: Machine> RayonJoin<M> {
         let pool = match &mut self.pool {
             Some(pool) => pool,
             none => {
-                let builder = ThreadPoolBuilder::new().num_threads(self.processors);
+                let builder = ThreadPoolBuilder::new().num_threads(self.processors).start_handler(pin);
                 let refused = |e| RunError::System { what: "a rayon pool", source: std::io::Error::other(e) };
                 none.insert(builder.build().map_err(refused)?)
             }

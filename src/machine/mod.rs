@@ -184,6 +184,11 @@ pub trait Machine: Sync {
     /// Roughly what it costs, in ticks, to start and end an empty run on `processors` processors as the
     /// machine is now: what work must be able to save before sharing it is even tried.
     fn start_ticks(&self, processors: usize) -> u64;
+    /// Ticks of work charged in the last run, summed over its processors, where the machine counts them:
+    /// what is left of their time went into finding and handing over tasks (P2-24).
+    fn charged(&self) -> Option<u64> {
+        None
+    }
     /// Ticks a nanosecond: 1 natively, the clock rate in GHz on a simulated machine.
     fn ticks_per_nanosecond(&self) -> f64 {
         1.0

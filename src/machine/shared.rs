@@ -33,7 +33,7 @@ impl Layout {
 /// Where shared memory comes from. Natively it is the heap; a simulated machine hands out numbered
 /// memory of its own.
 pub trait Arena: Send + Sync {
-    /// Takes a block whose alignment is at least [`LINE`].
+    /// Takes a block whose alignment is at least 128 bytes, the widest line there is.
     fn take(&self, bytes: Bytes) -> NonNull<u8>;
     /// Gives a block back.
     ///

@@ -282,6 +282,10 @@ impl Machine for Simulated {
         processors as u64 * 2 * self.model.cache_to_cache + self.model.start + self.model.finish
     }
 
+    fn charged(&self) -> Option<u64> {
+        Some(self.lock().engine.statistics.charged.iter().sum())
+    }
+
     fn now(&self) -> u64 {
         self.lock().now
     }

@@ -1,6 +1,6 @@
 //! `apportion machine calibrate`: fits the constants of the preset `host` to the machine this runs on.
 //!
-//! The same little programs ([`programs`]) run on two real threads and on the simulated machine; a
+//! The same little programs (`programs`) run on two real threads and on the simulated machine; a
 //! constant is turned until the simulated machine takes as long as the real one. No scheme is among
 //! these programs, so [`predict`] can hold predictions of whole schemes against measurements.
 //!

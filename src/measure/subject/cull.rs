@@ -6,7 +6,8 @@
 
 use super::settings::{JobSettings, of_scheme};
 use super::{
-    Cell, MeasureError, Options, Sample, Stage, Subject, SubjectCache, failed, load_imbalance, simulated,
+    Cell, MeasureError, Options, Sample, Stage, Subject, SubjectCache, TraversalShare, failed,
+    load_imbalance, simulated,
 };
 use crate::geometry::{Frustum, culling};
 use crate::job::cull::{Costs, CullTree, Descent, Frame, History, Tests};
@@ -118,6 +119,7 @@ impl<H: Borrow<M>, M: Machine> Subject for CullSubject<H, M> {
     fn sample(&mut self, _repeat: u32) -> Result<Vec<Sample>, MeasureError> {
         let machine = self.machine.borrow();
         let mut samples = Vec::new();
+        let mut traversal = TraversalShare::default();
         let (mut visited, mut visible, mut imbalance) = (0, 0, 0.0);
         for (number, camera) in self.stage.cameras.iter().enumerate() {
             let frustum = Frustum::new(camera);
@@ -133,6 +135,7 @@ impl<H: Borrow<M>, M: Machine> Subject for CullSubject<H, M> {
             };
             let ticks = machine.now() - before;
             let shares = shares.map_err(failed)?;
+            traversal.add(machine, shares.len(), ticks);
             samples.push(Sample::of_frame(
                 "frame_time",
                 number,
@@ -153,6 +156,7 @@ impl<H: Borrow<M>, M: Machine> Subject for CullSubject<H, M> {
         samples.push(Sample::of_path("nodes_visited", visited as f64 / frames));
         samples.push(Sample::of_path("nodes_visible", visible as f64 / frames));
         samples.push(Sample::of_path("load_imbalance", imbalance / frames));
+        samples.extend(traversal.sample());
         Ok(samples)
     }
 }

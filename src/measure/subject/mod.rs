@@ -8,7 +8,7 @@ use super::{Cell, MeasureError, Options};
 use crate::geometry::Camera;
 use crate::machine::simulated::{Model, ModelError};
 use crate::machine::threads::TeamSettings;
-use crate::machine::{Simulated, Threads};
+use crate::machine::{Machine, Simulated, Threads};
 use crate::record::THREADS;
 use crate::scene::{self, CameraPath};
 use crate::scheme::tree::SCHEMES;
@@ -170,6 +170,28 @@ fn simulated(cell: &Cell) -> Result<Simulated, MeasureError> {
         model.set(constant, number).map_err(|error| MeasureError::Words(error.to_string()))?;
     }
     Ok(Simulated::new(model))
+}
+
+/// Sums up how much of the processors' time was not charged as work, on machines that know (P2-24).
+#[derive(Default)]
+struct TraversalShare {
+    all: u64,
+    charged: u64,
+}
+
+impl TraversalShare {
+    /// Adds the last run, which took `ticks` on `processors` processors.
+    fn add<M: Machine>(&mut self, machine: &M, processors: usize, ticks: u64) {
+        if let Some(charged) = machine.charged() {
+            self.all += ticks * processors as u64;
+            self.charged += charged;
+        }
+    }
+
+    fn sample(&self) -> Option<Sample> {
+        let share = 100.0 * (1.0 - self.charged as f64 / self.all as f64);
+        (self.all > 0).then(|| Sample::of_path("traversal_share", share))
+    }
 }
 
 /// How much more than the mean the busiest processor visited, per cent of the mean.

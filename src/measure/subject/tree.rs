@@ -4,7 +4,10 @@
 //! threads. The cell's frames are runs; its scene is called `synthetic`.
 
 use super::settings::{JobSettings, of_scheme};
-use super::{Cell, MeasureError, Options, Sample, Subject, SubjectCache, failed, load_imbalance, simulated};
+use super::{
+    Cell, MeasureError, Options, Sample, Subject, SubjectCache, TraversalShare, failed, load_imbalance,
+    simulated,
+};
 use crate::job::synthetic::Synthetic;
 use crate::machine::{Machine, Simulated, Threads};
 use crate::record::THREADS;
@@ -69,6 +72,7 @@ impl<H: Borrow<M>, M: Machine> Subject for TreeSubject<H, M> {
     fn sample(&mut self, _repeat: u32) -> Result<Vec<Sample>, MeasureError> {
         let machine = self.machine.borrow();
         let mut samples = Vec::new();
+        let mut traversal = TraversalShare::default();
         let (mut visited, mut imbalance) = (0, 0.0);
         for run in 0..self.runs {
             if !self.pause.is_zero() {
@@ -78,6 +82,7 @@ impl<H: Borrow<M>, M: Machine> Subject for TreeSubject<H, M> {
             let shares = self.scheme.run(machine, &self.work);
             let ticks = machine.now() - before;
             let shares = shares.map_err(failed)?;
+            traversal.add(machine, shares.len(), ticks);
             samples.push(Sample::of_frame("frame_time", run, ticks as f64 / machine.ticks_per_nanosecond()));
             let nodes = shares.iter().map(|share| share.visited).sum::<u64>();
             let found = shares.iter().fold(0, |sum, share| sum ^ share.found);
@@ -92,6 +97,7 @@ impl<H: Borrow<M>, M: Machine> Subject for TreeSubject<H, M> {
         }
         samples.push(Sample::of_path("nodes_visited", visited as f64 / self.runs.max(1) as f64));
         samples.push(Sample::of_path("load_imbalance", imbalance / self.runs.max(1) as f64));
+        samples.extend(traversal.sample());
         Ok(samples)
     }
 }

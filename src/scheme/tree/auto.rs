@@ -1,10 +1,10 @@
 //! Chooses between one processor and sharing by what was measured on this very work: "model no more than
 //! a scene needs", and one processor is a good answer.
 //!
-//! Steps: 1. a serial run is timed; 2. if sharing could save more than the machine takes to start a run
-//! as it is now (its team may sleep), three runs are shared, the best of which counts; 3. the faster way
-//! is kept. While serial, the next look comes after 64 runs, then 128, up to 4,096, and the runs between
-//! are not even timed: they cost a counter and a branch. While sharing, every run is timed, and every
+//! Steps: 1. a serial run is timed; 2. if starting a run on the machine as it is now (its team may
+//! sleep) takes less than 2 % of the time until the next look, three runs are shared, the best of which
+//! counts; 3. the faster way is kept. While serial, the next look comes after 64 runs, then 128, up to
+//! 4,096, and the runs between are not even timed: they cost a counter and a branch. While sharing, every run is timed, and every
 //! 256th is serial, since scenes change and teams fall asleep.
 //!
 //! Settings: those of `lock_free`, which does the sharing.
@@ -42,6 +42,8 @@ const FIRST_INTERVAL: u32 = 64;
 const LAST_INTERVAL: u32 = 4096;
 const TRIALS: u32 = 3;
 const SERIAL_EVERY: u32 = 256;
+/// What a look may cost, as a part of the serial runs until the next one.
+const PRICE_OF_A_LOOK: f64 = 0.02;
 
 impl<M: Machine> Auto<M> {
     pub(super) fn new(machine: &M, processors: usize, settings: &Settings) -> Result<Self, SettingError> {
@@ -114,9 +116,12 @@ impl<M: Machine> Auto<M> {
         Ok(shares)
     }
 
+    /// Whether waking a team that sleeps costs little beside the runs until the next look. That a team
+    /// once woken stays awake, where runs follow closely, only a trial shows.
     fn is_worth_a_trial(&self, machine: &M) -> bool {
-        let saving = self.serial_ticks * (1.0 - 1.0 / self.processors as f64);
-        self.processors > 1 && saving > machine.start_ticks(self.processors) as f64
+        let until_next_look = self.serial_ticks * f64::from(self.interval);
+        let start = machine.start_ticks(self.processors) as f64;
+        self.processors > 1 && start < PRICE_OF_A_LOOK * until_next_look
     }
 
     fn stay_serial(&mut self) -> Mode {

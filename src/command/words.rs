@@ -30,8 +30,9 @@ pub(crate) enum Action {
     },
     /// Show the constants of the machines, or fit `host` to this computer.
     Machine {
-        /// The machine; `calibrate` to fit `host`; all where absent.
-        #[arg(value_name = "NAME|calibrate")]
+        /// The machine; `calibrate` to fit `host`; `predict` to fit it and hold the speedups it foretells
+        /// against measured ones (some minutes); all where absent.
+        #[arg(value_name = "NAME|calibrate|predict")]
         machine: Option<String>,
     },
     /// Hold invariants under load on real threads.

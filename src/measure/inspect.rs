@@ -62,22 +62,30 @@ fn numbers(counts: &[usize]) -> String {
     counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" ")
 }
 
+/// Interleaved repeats, and runs back to back in each, of `machine predict`.
+const PREDICT: (usize, usize) = (15, 20);
+
 /// The constants of a machine, or one line on each of them, for a reader. `calibrate` fits `host` to this
-/// computer and prints it as a file for `--machine FILE.toml`; `progress` is told what is being measured.
+/// computer and prints it as a file for `--machine FILE.toml`; `predict` fits it too and holds the speedups
+/// it foretells against measured ones. `progress` is told what is being measured.
 ///
 /// # Errors
 /// There is no such machine, or the fit failed.
-pub fn machine(name: Option<&str>, progress: &mut dyn FnMut(&str)) -> Result<String, MeasureError> {
+pub fn machine(name: Option<&str>, progress: &mut (dyn FnMut(&str) + Send)) -> Result<String, MeasureError> {
     let failed = |error: &dyn std::fmt::Display| MeasureError::Failed(error.to_string());
     match name {
         Some("calibrate") => {
             let calibration = super::calibrate::calibrate(progress).map_err(|e| failed(&e))?;
             Ok(calibration.to_toml().trim_end().to_owned())
         }
+        Some("predict") => {
+            let (repeats, runs) = PREDICT;
+            Ok(super::calibrate::predict(repeats, runs, progress).map_err(|e| failed(&e))?.to_string())
+        }
         Some(THREADS) => Ok(format!("{THREADS:12} {}", this_computer())),
         Some(name) => {
             let unknown = |_| {
-                let known = Model::names().chain([THREADS, "calibrate"]);
+                let known = Model::names().chain([THREADS, "calibrate", "predict"]);
                 MeasureError::Unknown { kind: "machine", name: name.to_owned(), near: near(name, known) }
             };
             let is_file = name.ends_with(".toml");

@@ -8,6 +8,11 @@ pub fn utc_now() -> String {
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
 }
 
+/// Today, as `2026-03-01`.
+pub(crate) fn today() -> String {
+    utc_now()[..10].to_owned()
+}
+
 /// A run's id: now, as `20260301T120000Z`, so that folders sort by age.
 pub fn run_id() -> String {
     utc_now().replace(['-', ':'], "")

@@ -7,7 +7,7 @@
 //! Invariant: a *cell* (one scheme, with its settings, on one machine with P processors, once) is either in the log
 //! with its last row, `cell_complete`, or it counts as never run: opening the log drops what is left of it.
 
-mod clock;
+pub(crate) mod clock;
 mod csv;
 mod figure;
 mod folder;

@@ -13,7 +13,7 @@
 
 mod caches;
 mod gate;
-pub mod predict;
+mod predict;
 mod programs;
 
 use crate::machine::simulated::Model;
@@ -21,6 +21,7 @@ use crate::machine::threads::TeamSettings;
 use crate::machine::{RunError, Simulated, Threads};
 use caches::caches;
 pub use gate::Gate;
+pub use predict::{Prediction, Predictions, predict};
 use programs::lines;
 use std::fmt::Write as _;
 use std::time::Duration;
@@ -51,6 +52,20 @@ pub enum CalibrateError {
     /// What was measured does not make a machine.
     #[error("what was measured makes no machine: {0}")]
     Model(#[from] crate::machine::simulated::ModelError),
+    /// Something else ran on the two cores most of the time.
+    #[error(
+        "the host is too busy to be calibrated: lines came from another core at no cost, and {discarded} \
+         samples were discarded beside {kept} kept; try again when it is idle"
+    )]
+    Disturbed {
+        /// Samples taken while the cores were disturbed.
+        discarded: usize,
+        /// Samples that counted.
+        kept: usize,
+    },
+    /// No measurement of a whole scheme was undisturbed.
+    #[error("the host was never quiet at the distance it was fitted for; try again when it is idle")]
+    NeverQuiet,
     /// The file cannot be written.
     #[error("{file}: cannot write the machine description: {source}")]
     Write {
@@ -146,6 +161,9 @@ fn fit(processors: usize, progress: &dyn Fn(&'static str)) -> Result<Calibration
         solve(&mut model, constant, target, simulated)?;
         measured.push((name, target, simulated));
     }
+    if model.cache_to_cache == 0 {
+        return Err(CalibrateError::Disturbed { discarded: gate.discarded, kept: gate.kept });
+    }
     let mut programs = Vec::new();
     for (name, target, simulated) in measured {
         let there = simulated(&Simulated::new(model.clone()))?;
@@ -196,21 +214,7 @@ fn describe(processors: usize) -> String {
         (Some(family), Some(model)) => format!(" (family {family}, model {model})"),
         _ => String::new(),
     };
-    let days = std::time::SystemTime::UNIX_EPOCH.elapsed().map_or(0, |age| age.as_secs() / 86_400);
-    let (year, month, day) = date(days);
-    format!("{processors} processors, {name}{kind}, fitted {year}-{month:02}-{day:02}")
-}
-
-/// Year, month and day of the Gregorian calendar, `days` after 1970-01-01 (Howard Hinnant's
-/// `civil_from_days`).
-fn date(days: u64) -> (u64, u64, u64) {
-    let shifted = days + 719_468;
-    let (era, of_era) = (shifted / 146_097, shifted % 146_097);
-    let year = (of_era - of_era / 1_460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year + year / 4 - year / 100);
-    let shifted_month = (5 * of_year + 2) / 153;
-    let month = if shifted_month < 10 { shifted_month + 3 } else { shifted_month - 9 };
-    (400 * era + year + u64::from(month <= 2), month, of_year - (153 * shifted_month + 2) / 5 + 1)
+    format!("{processors} processors, {name}{kind}, fitted {}", crate::record::clock::today())
 }
 
 impl Calibration {
@@ -260,13 +264,5 @@ mod tests {
             let there = program(&Simulated::new(model)).unwrap();
             assert!((there - target).abs() <= 0.02 * target + 1.0, "{name}: {there} for {target}");
         }
-    }
-
-    #[test]
-    fn days_have_dates() {
-        assert_eq!(
-            [date(0), date(59), date(11_016), date(20_454)],
-            [(1970, 1, 1), (1970, 3, 1), (2000, 2, 29), (2026, 1, 1)]
-        );
     }
 }

@@ -2,9 +2,8 @@
 //! processors, on synthetic trees, none of which took part in the fit.
 
 use super::gate::{Gate, median};
-use super::{CalibrateError, programs, team};
+use super::{CalibrateError, Calibration, calibrate, programs, team};
 use crate::job::synthetic::Synthetic;
-use crate::machine::simulated::Model;
 use crate::machine::{Machine, RunError, Simulated};
 use crate::scheme::tree::{Scheme, TreeWork};
 use std::collections::BTreeMap;
@@ -78,60 +77,76 @@ impl fmt::Display for Predictions {
     }
 }
 
-/// Measures and predicts, with `repeats` interleaved repeats (15 or more for a result that counts) of
-/// `runs` runs back to back. The speedup of a repeat is its median serial run over its median run, of those between two quiet moments, of
-/// the scheme.
+/// Fits of one tree at most: cores that drift between the fit and the measurement spoil a try.
+const TRIES: usize = 5;
+
+/// Fits, measures and predicts, with `repeats` interleaved repeats (15 or more for a result that counts) of
+/// `runs` runs back to back. The speedup of a repeat is its median serial run over its median run, of
+/// those between two quiet moments, of the scheme. The fit is made anew before each tree: virtual
+/// cores drift between near and far within minutes, and a fit holds for the distance it was made at.
 ///
 /// # Errors
 /// [`CalibrateError`].
 pub fn predict(
-    model: &Model,
     repeats: usize,
     runs: usize,
     progress: &mut (dyn FnMut(&str) + Send),
 ) -> Result<Predictions, CalibrateError> {
-    // On a thread of its own, which stays pinned.
-    std::thread::scope(|scope| {
-        let compared = scope.spawn(|| compare(model, repeats, runs, progress));
-        compared.join().unwrap_or_else(|payload| std::panic::resume_unwind(payload))
-    })
-}
-
-fn compare(
-    model: &Model,
-    repeats: usize,
-    runs: usize,
-    progress: &mut dyn FnMut(&str),
-) -> Result<Predictions, CalibrateError> {
-    let team = team()?;
-    let cycles = programs::ping_pong(&Simulated::new(model.clone()))?;
-    let gate = Gate::at(1000.0 * cycles / model.clock_mhz);
     let mut all = Vec::new();
     for &nodes in NODES {
         for &work_ns in WORK {
-            progress(&format!("{nodes} nodes of {} to {} ns", work_ns.0, work_ns.1));
-            let measured = measure(&team, nodes, work_ns, repeats, runs, &gate)?;
-            let simulated = Simulated::new(model.clone());
-            let predicted = measure(&simulated, nodes, work_ns, 1, 5, &gate)?;
-            for (i, scheme) in SCHEMES.iter().enumerate().skip(1) {
-                let mut speedups = speedups(&measured, i);
-                if speedups.is_empty() {
-                    progress(&format!("{scheme}: the host was never quiet at the fitted distance"));
-                    continue;
+            let tree = format!("{nodes} nodes of {} to {} ns", work_ns.0, work_ns.1);
+            let mut compared = Vec::new();
+            for _ in 0..TRIES {
+                progress(&tree);
+                let fitted = calibrate(&mut |_| ())?;
+                // On a thread of its own, which stays pinned.
+                compared = std::thread::scope(|scope| {
+                    let compared = scope.spawn(|| compare(&fitted, nodes, work_ns, repeats, runs));
+                    compared.join().unwrap_or_else(|payload| std::panic::resume_unwind(payload))
+                })?;
+                if compared.len() + 1 == SCHEMES.len() {
+                    break;
                 }
-                let middle = median(&mut speedups);
-                let quartile = |share: usize| speedups[(speedups.len() - 1) * share / 4];
-                all.push(Prediction {
-                    scheme,
-                    nodes,
-                    work_ns,
-                    measured: (middle, quartile(1), quartile(3)),
-                    predicted: median(&mut self::speedups(&predicted, i)),
-                });
+                progress("the cores drifted or were disturbed: once more");
             }
+            all.append(&mut compared);
         }
     }
+    if all.is_empty() {
+        return Err(CalibrateError::NeverQuiet);
+    }
     Ok(Predictions(all))
+}
+
+/// All schemes on one tree, but those that were never measured undisturbed.
+fn compare(
+    fitted: &Calibration,
+    nodes: u32,
+    work_ns: (u32, u32),
+    repeats: usize,
+    runs: usize,
+) -> Result<Vec<Prediction>, CalibrateError> {
+    let measured = measure(&team()?, nodes, work_ns, repeats, runs, &fitted.gate)?;
+    let simulated = Simulated::new(fitted.model.clone());
+    let predicted = measure(&simulated, nodes, work_ns, 1, 5, &fitted.gate)?;
+    let mut all = Vec::new();
+    for (i, scheme) in SCHEMES.iter().enumerate().skip(1) {
+        let mut speedups = speedups(&measured, i);
+        if speedups.is_empty() {
+            continue;
+        }
+        let middle = median(&mut speedups);
+        let quartile = |share: usize| speedups[(speedups.len() - 1) * share / 4];
+        all.push(Prediction {
+            scheme,
+            nodes,
+            work_ns,
+            measured: (middle, quartile(1), quartile(3)),
+            predicted: median(&mut self::speedups(&predicted, i)),
+        });
+    }
+    Ok(all)
 }
 
 fn speedups(repeats: &[Vec<f64>], scheme: usize) -> Vec<f64> {

@@ -1,5 +1,6 @@
 //! The command line: thin. Words in, exit code out: 0 done, 1 the run failed, 2 the words were off.
 
+mod compare;
 mod list;
 mod print;
 mod progress;
@@ -43,6 +44,7 @@ fn act(action: Action) -> Result<ExitCode> {
         Action::List => list::list()?,
         Action::Run(words) => return run::run(&words),
         Action::Table(words) => table::table(&words)?,
+        Action::Compare(words) => compare::compare(&words)?,
         Action::Scene { scene } => print::line(&inspect::scene(&scene)?)?,
         Action::Machine { machine } => {
             let mut tell = |what: &str| {

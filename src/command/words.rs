@@ -22,6 +22,8 @@ pub(crate) enum Action {
     Run(RunWords),
     /// Show the newest finished run of an experiment: paper, simulated and measured, with the error of each.
     Table(TableWords),
+    /// Hold two runs against each other: for each cell a ratio, its interval and a verdict.
+    Compare(CompareWords),
     /// Tell what a scene holds.
     Scene {
         /// A file (glTF, GLB, OBJ) or the name of a generated scene.
@@ -72,6 +74,23 @@ pub(crate) struct TableWords {
     /// The experiment.
     pub(crate) name: String,
     /// How to print the table.
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    pub(crate) format: Format,
+}
+
+/// The words of `compare`.
+#[derive(Debug, Args)]
+pub(crate) struct CompareWords {
+    /// The run before: its folder, or an experiment for its newest finished run.
+    #[arg(value_name = "RUN_A")]
+    pub(crate) a: String,
+    /// The run after.
+    #[arg(value_name = "RUN_B")]
+    pub(crate) b: String,
+    /// What to compare by; `frame_time` compares the quieter frames, `frame_time_p90` the slow ones.
+    #[arg(long, value_name = "METRIC", default_value = "frame_time")]
+    pub(crate) metric: String,
+    /// How to print the comparison.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub(crate) format: Format,
 }

@@ -4,6 +4,7 @@
 //! choice of the settings that concern all schemes; within a group a *curve* is one scheme with its own settings.
 
 mod chart;
+pub mod comparison;
 mod group;
 mod marker;
 mod table;
@@ -11,6 +12,7 @@ mod text;
 mod winners;
 
 pub use chart::{Chart, speedup_charts};
+pub use comparison::{Comparison, compare};
 pub use table::{Line, Table, table};
 
 /// What went wrong while a chart was drawn.

@@ -125,6 +125,14 @@ pub(crate) struct RunWords {
     /// Interleaved repeats on real threads.
     #[arg(long, value_name = "N")]
     repeats: Option<u32>,
+    /// Go on repeating what runs on threads until the 95 % interval of every speedup lies within so many per
+    /// cent of its median, either way; at least 6 repeats.
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    pub(crate) until: Option<f64>,
+    /// Time limit of --until, seconds [default: 300]. The experiment's own repeats are made in any case; a
+    /// resumed run has this time anew.
+    #[arg(long, value_name = "SECONDS", requires = "until", value_parser = clap::value_parser!(u64).range(1..))]
+    at_most: Option<u64>,
     /// Fewer frames and repeats: to see that it runs, not how fast.
     #[arg(long)]
     quick: bool,
@@ -151,7 +159,15 @@ impl RunWords {
             frames: self.frames,
             seed: self.seed,
             repeats: self.repeats,
+            until: self.until,
+            at_most: self.at_most,
             quick: self.quick,
         }
     }
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let percent = text.trim_end_matches('%').trim_end().parse().ok();
+    let within = percent.filter(|percent| *percent > 0.0 && *percent <= 100.0);
+    within.ok_or_else(|| "expected per cent, above 0 and up to 100".to_owned())
 }

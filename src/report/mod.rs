@@ -5,6 +5,7 @@
 
 mod chart;
 pub mod comparison;
+mod doubt;
 mod group;
 mod marker;
 mod table;
@@ -13,6 +14,7 @@ mod winners;
 
 pub use chart::{Chart, speedup_charts};
 pub use comparison::{Comparison, compare};
+pub use doubt::loose;
 pub use table::{Line, Table, table};
 
 /// What went wrong while a chart was drawn.

@@ -20,6 +20,13 @@ pub struct Interval {
     pub high: f64,
 }
 
+impl Interval {
+    /// How far the further end lies from the median, as a share of the median.
+    pub fn spread(&self) -> f64 {
+        (self.high - self.median).max(self.median - self.low) / self.median.abs()
+    }
+}
+
 /// The median; none of no numbers. The mean of the middle two where there is no middle one.
 pub fn median(numbers: &[f64]) -> Option<f64> {
     let mut sorted = numbers.to_vec();

@@ -20,14 +20,14 @@ pub(crate) fn compare(words: &CompareWords) -> Result<()> {
     let metas = [Meta::read(&a.meta())?, Meta::read(&b.meta())?];
     let comparison = compare_rows(&read_rows(&a.rows())?, &read_rows(&b.rows())?, &words.metric)?;
     for doubt in doubts([&a, &b], &metas) {
-        eprintln!("apportion: {doubt}");
+        print::note(&doubt);
     }
     match words.format {
         Format::Table => {
             for (run, (folder, meta)) in ["A", "B"].into_iter().zip([&a, &b].into_iter().zip(&metas)) {
                 print::line(&format!("{run}: {}, of {}", folder.path().display(), meta.start))?;
             }
-            print::line(&comparison.text())
+            print::verdicts(&comparison.text())
         }
         Format::Json => print::line(&comparison.json()),
         Format::Csv => print::line(&comparison.csv()),

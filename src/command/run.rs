@@ -32,7 +32,7 @@ pub(crate) fn run(words: &RunWords) -> Result<ExitCode> {
         let folder = one.folder()?;
         if let Ending::Stopped { left } = one.go(&folder, &stop)? {
             let place = folder.path().display();
-            eprintln!("apportion: stopped with {left} cells missing in {place}; take it up with --resume");
+            print::note(&format!("stopped with {left} cells missing in {place}; take it up with --resume"));
             return Ok(ExitCode::from(INTERRUPTED));
         }
         let table = one.finish(&folder, words.format)?;
@@ -187,7 +187,7 @@ impl Prepared {
 /// Says on standard error which speedups `--until` gave up on.
 fn tell_loose(percent: f64, loose: &[String]) {
     if !loose.is_empty() {
-        eprintln!("apportion: time was up before these speedups were sure to {percent} %:");
+        print::note(&format!("time was up before these speedups were sure to {percent} %:"));
         loose.iter().for_each(|cell| eprintln!("  {cell}"));
     }
 }

@@ -11,6 +11,11 @@ use std::collections::HashSet;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// A lock may outlive its holder by a moment: a process being killed, or a child that has not yet become another program.
+const LOOKS: u32 = 20;
+const BETWEEN_LOOKS: Duration = Duration::from_millis(10);
 
 /// The log of a run, open for appending.
 #[derive(Debug)]
@@ -103,14 +108,14 @@ fn open_locked(path: &Path) -> Result<File, RecordError> {
         .truncate(false)
         .open(path)
         .map_err(RecordError::file("open", path))?;
-    match file.try_lock() {
-        Err(TryLockError::WouldBlock) => {
-            let path = path.parent().unwrap_or(path).to_path_buf();
-            Err(RecordError::InUse { path })
+    for _ in 0..LOOKS {
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => std::thread::sleep(BETWEEN_LOOKS),
+            // A file system without locks is no reason not to measure.
+            Ok(()) | Err(TryLockError::Error(_)) => return Ok(file),
         }
-        // A file system without locks is no reason not to measure.
-        Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
     }
+    Err(RecordError::InUse { path: path.parent().unwrap_or(path).to_path_buf() })
 }
 
 /// Reads the file, cut back to its last newline.

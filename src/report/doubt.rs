@@ -63,8 +63,9 @@ fn too_near(group: &Group, processors: u32, cells: &[(String, BTreeMap<u32, f64>
         let curve = group.curves.iter().find(|curve| label(curve, &group.curves) == name)?;
         curve.points.get(&processors).map(|point| point.median)
     };
+    // Reversed: of equals the last is taken, and it is to be the first of the table.
     let (best, its) =
-        cells.iter().max_by(|(a, _), (b, _)| median(a).partial_cmp(&median(b)).expect("finite"))?;
+        cells.iter().rev().max_by(|(a, _), (b, _)| median(a).partial_cmp(&median(b)).expect("finite"))?;
     if cells.len() < 2 {
         return None;
     }
@@ -85,7 +86,7 @@ fn too_near(group: &Group, processors: u32, cells: &[(String, BTreeMap<u32, f64>
         .collect();
     (!near.is_empty()).then(|| {
         format!(
-            "cannot tell {best} from {} at P={processors}: the interval of their paired ratio holds 1",
+            "cannot tell {best} from {} at P={processors}: their paired ratio's interval holds 1",
             near.join(", ")
         )
     })

@@ -16,6 +16,7 @@ pub use chart::{Chart, speedup_charts};
 pub use comparison::{Comparison, compare};
 pub use doubt::loose;
 pub use table::{Line, Table, table};
+pub use text::wrap;
 
 /// What went wrong while a chart was drawn.
 #[derive(Debug, thiserror::Error)]

@@ -19,7 +19,7 @@ pub(crate) fn text(table: &Table) -> String {
     let no_doubt = Vec::new();
     for (index, group) in table.groups.iter().enumerate() {
         let doubts = table.doubts.get(index).unwrap_or(&no_doubt);
-        let notes: String = doubts.iter().map(|doubt| wrap(doubt)).collect();
+        let notes: String = doubts.iter().map(|doubt| wrap(doubt, 2)).collect();
         parts.push(group_text(group) + &notes);
     }
     parts.extend(winners(&table.groups));
@@ -88,7 +88,7 @@ fn group_text(group: &Group) -> String {
     }
     let settings = if group.settings.is_empty() { String::new() } else { format!(", {}", group.settings) };
     let note = if intervals { ": median [95 % interval]" } else { "" };
-    let title = wrap(&format!("speedup on {}, {}{settings}{note}", group.machine, group.scene));
+    let title = wrap(&format!("speedup on {}, {}{settings}{note}", group.machine, group.scene), 2);
     title + &blocks(&columns).join("\n")
 }
 
@@ -112,16 +112,18 @@ fn blocks(columns: &[Vec<String>]) -> Vec<String> {
     blocks.iter().map(|block| align(&lines(block), 1)).collect()
 }
 
-/// The text in lines that fit a screen, broken at blanks and, where words are longer, behind semicolons.
-fn wrap(text: &str) -> String {
+/// The text in lines of at most 80 letters, broken at blanks and behind semicolons; all lines but the first begin
+/// with so many blanks.
+pub fn wrap(text: &str, indent: usize) -> String {
     let mut wrapped = String::new();
     let mut used = 0;
     for word in text.split_inclusive([' ', ';']) {
         let length = word.trim_end().chars().count();
         if used > 0 && used + length > WIDTH {
             wrapped.truncate(wrapped.trim_end().len());
-            wrapped.push_str("\n  ");
-            used = 2;
+            wrapped.push('\n');
+            wrapped.push_str(&" ".repeat(indent));
+            used = indent;
         }
         wrapped.push_str(word);
         used += word.chars().count();

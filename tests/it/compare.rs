@@ -189,7 +189,8 @@ fn more_is_better_where_the_metric_says_so() {
     let speedups = |factor: f64| {
         let mut rows = made_up(1, (9, 1), factor);
         for row in rows.iter_mut().filter(|row| row.metric == "frame_time") {
-            ("speedup".clone_into(&mut row.metric), row.frame = None);
+            "speedup".clone_into(&mut row.metric);
+            row.frame = None;
         }
         rows
     };

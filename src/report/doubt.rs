@@ -8,6 +8,8 @@ use std::collections::{BTreeMap, HashMap};
 
 /// Fewer repeats give no 95 % interval of a median.
 const FEWEST: usize = 6;
+/// More than so many names are counted, not listed.
+const MANY: usize = 3;
 /// Seed of the bootstrap: fixed, so that a report drawn twice is the same report.
 const SEED: u64 = 1;
 
@@ -38,23 +40,34 @@ pub(crate) fn doubts(rows: &[Row], groups: &[Group]) -> Vec<Vec<String>> {
                 .filter(|curve| curve.scheme != "serial")
                 .filter_map(|curve| Some((label(curve, &group.curves), repeats(curve, processors)?)))
                 .collect();
-            notes.extend(too_near(group, processors, &cells));
+            // On one processor nothing is shared out.
+            notes.extend(too_near(group, processors, &cells).filter(|_| processors > 1));
             strays.extend(cells.iter().filter_map(|(name, repeats)| {
                 let values: Vec<f64> = repeats.values().copied().collect();
                 let strays = outliers(&values);
-                (strays > 0).then(|| format!("{name} at P={processors} {strays} of {}", values.len()))
+                (strays > 0)
+                    .then(|| (strays, format!("{name} at P={processors} {strays} of {}", values.len())))
             }));
         }
-        if !strays.is_empty() {
-            notes.push(format!(
-                "repeats further than {OUTLIER} scaled MADs from the median (kept): {}",
-                strays.join(", ")
-            ));
-        }
+        notes.extend(outlying(strays));
         notes.extend(lost(rows, group));
         notes
     };
     groups.iter().map(of_group).collect()
+}
+
+/// How many repeats are outliers: cell by cell where they are few.
+fn outlying(mut cells: Vec<(usize, String)>) -> Option<String> {
+    cells.sort_by_key(|(strays, _)| std::cmp::Reverse(*strays));
+    let all: usize = cells.iter().map(|(strays, _)| strays).sum();
+    let list = match &cells[..] {
+        [] => return None,
+        [(_, first), rest @ ..] if rest.len() >= MANY => {
+            format!("{all} in {} cells, most in {first}", cells.len())
+        }
+        few => few.iter().map(|(_, cell)| cell.as_str()).collect::<Vec<_>>().join(", "),
+    };
+    Some(format!("repeats beyond {OUTLIER} scaled MADs of the median (kept): {list}"))
 }
 
 /// Which schemes cannot be told from the best one, by the ratio of their speedups in the same repeat.
@@ -84,10 +97,10 @@ fn too_near(group: &Group, processors: u32, cells: &[(String, BTreeMap<u32, f64>
         .filter(|(name, theirs)| name != best && holds_one(theirs))
         .map(|(name, _)| name.as_str())
         .collect();
+    let others = if near.len() > MANY { format!("{} others", near.len()) } else { near.join(", ") };
     (!near.is_empty()).then(|| {
         format!(
-            "cannot tell {best} from {} at P={processors}: their paired ratio's interval holds 1",
-            near.join(", ")
+            "cannot tell {best} from {others} at P={processors}: the interval of their paired ratio holds 1",
         )
     })
 }

@@ -47,9 +47,9 @@ fn figure_text(lines: &[&Line]) -> String {
         ("metric", &metric),
         ("P", &processors),
     ];
-    // What all lines have in common is said once, above them.
-    let is_common = |(_, word): &(&str, Word<'_>)| {
-        lines.len() > 1 && lines.iter().all(|line| word(line) == word(lines[0]))
+    // Where all lines are of one of these, it is said once, above them.
+    let is_common = |(name, word): &(&str, Word<'_>)| {
+        ["scene", "machine", "metric"].contains(name) && lines.iter().all(|line| word(line) == word(lines[0]))
     };
     let (common, told): (Vec<_>, Vec<_>) = keys.into_iter().partition(is_common);
     let mut head: Vec<String> = told.iter().map(|(name, _)| (*name).to_owned()).collect();
@@ -63,7 +63,7 @@ fn figure_text(lines: &[&Line]) -> String {
         cells.push(cell);
     }
     let common: String = common.iter().map(|(name, word)| format!(", {name} {}", word(lines[0]))).collect();
-    let mut text = format!("paper | simulated | measured{common}\n{}", align(&cells, left));
+    let mut text = wrap(&format!("paper | simulated | measured{common}"), 2) + &align(&cells, left);
     // None of what was measured: the papers' machines were of another kind.
     let errors: Vec<f64> = lines.iter().filter_map(|line| line.error_simulated).map(f64::abs).collect();
     if !errors.is_empty() {
@@ -93,7 +93,7 @@ fn group_text(group: &Group) -> String {
 }
 
 /// Columns as tables no wider than a screen; the first column begins each.
-fn blocks(columns: &[Vec<String>]) -> Vec<String> {
+pub(crate) fn blocks(columns: &[Vec<String>]) -> Vec<String> {
     let width = |column: &Vec<String>| column.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
     let (first, others) = columns.split_first().expect("there is a column of names");
     let mut blocks: Vec<Vec<&Vec<String>>> = Vec::new();

@@ -26,7 +26,7 @@ use serde::Serialize;
 /// hold quiet moments.
 pub const BLOCKS: usize = 12;
 /// Two runs of the same program differ by up to this much, as a share, for reasons that neither of them shows.
-pub const FLOOR: f64 = 0.015;
+pub const FLOOR: f64 = 0.02;
 /// The chance that any interval of a comparison misses.
 const RISK: f64 = 0.05;
 /// What is exact differs beyond rounding only.

@@ -3,8 +3,8 @@
 use super::{Comparison, FLOOR, Pair, Verdict};
 use crate::record::statistics::Interval;
 use crate::record::{Better, CellKey, THREADS, quoted};
-use crate::report::group::split;
-use crate::report::text::align;
+use crate::report::group::{Curve, split};
+use crate::report::text::{align, label, wrap};
 use serde::Serialize;
 use std::fmt;
 
@@ -52,16 +52,19 @@ impl Comparison {
             let title = title(&first.key);
             let (group, others) = left.into_iter().partition(|pair| self::title(&pair.key) == title);
             left = others;
-            text.push_str(&format!("\n{title}\n{}", table(&group)));
+            text.push_str(&format!("\n{}{}", wrap(&title, 2), table(&group)));
         }
         for (run, only) in [("A", &self.only_a), ("B", &self.only_b)] {
             for key in only {
-                text.push_str(&format!(
-                    "only in {run}: {}, {}, {} processors\n",
+                let curve = curve(key);
+                let only = format!(
+                    "only in {run}: {}, {}{}, {} processors",
                     title(key),
-                    name(key),
+                    curve.scheme,
+                    if curve.settings.is_empty() { String::new() } else { format!(" {}", curve.settings) },
                     key.processors
-                ));
+                );
+                text.push_str(&wrap(&only, 2));
             }
         }
         text.push_str(&format!("\n{}", self.summary()));
@@ -169,12 +172,14 @@ impl Comparison {
 fn table(pairs: &[&Pair]) -> String {
     let head = ["scheme", "P", "A", "B", "B/A", "95 % interval", "verdict"];
     let mut cells = vec![head.map(str::to_owned).to_vec()];
-    for pair in pairs {
+    let curves: Vec<Curve> = pairs.iter().map(|pair| curve(&pair.key)).collect();
+    for (pair, curve) in pairs.iter().zip(&curves) {
+        let name = label(curve, &curves);
         let (median, interval) = (format!("{:.3}", pair.ratio.median), interval(&pair.ratio));
         let processors = pair.key.processors.to_string();
         let verdict = pair.verdict.to_string();
         let (a, b) = (significant(pair.a), significant(pair.b));
-        cells.push(vec![name(&pair.key), processors, a, b, median, interval, verdict]);
+        cells.push(vec![name, processors, a, b, median, interval, verdict]);
     }
     align(&cells, 1)
 }
@@ -186,12 +191,10 @@ fn title(key: &CellKey) -> String {
     format!("{}, {}{settings}", key.machine, key.scene)
 }
 
-/// The scheme with its own settings.
-fn name(key: &CellKey) -> String {
-    let (_, own) = split(&key.settings, &key.machine);
-    let bare = |pair: &str| pair.split_once('.').map_or(pair, |(_, bare)| bare).to_owned();
-    let own = own.split(';').filter(|pair| !pair.is_empty()).map(bare);
-    std::iter::once(key.scheme.clone()).chain(own).collect::<Vec<_>>().join(" ")
+/// The scheme with its own settings, to be labelled.
+fn curve(key: &CellKey) -> Curve {
+    let (_, settings) = split(&key.settings, &key.machine);
+    Curve { scheme: key.scheme.clone(), settings, points: Default::default() }
 }
 
 fn ratio(ratio: &Interval) -> String {

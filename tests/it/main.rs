@@ -2,6 +2,7 @@
 
 mod advise;
 mod command_line;
+mod compare;
 mod experiment;
 mod house_rules;
 mod mock;

@@ -80,7 +80,7 @@ impl<H: Borrow<M>, M: Machine> CullSubject<H, M> {
     ) -> Result<Self, MeasureError> {
         let on = machine.borrow();
         let scheme = Scheme::new(&cell.scheme, on, cell.processors as usize, of_scheme(cell))
-            .map_err(|error| MeasureError::Words(error.to_string()))?;
+            .map_err(|error| MeasureError::Setting(error.to_string()))?;
         let tree = CullTree::new(on, &stage.tree, asked.history);
         let expected =
             stage.cameras.iter().map(|camera| expected(&stage, &Frustum::new(camera), asked.descent));

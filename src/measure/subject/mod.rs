@@ -15,6 +15,7 @@ use crate::scheme::tree::SCHEMES;
 use crate::structure::{AabbTree, SkipTree};
 use std::collections::HashMap;
 use std::fmt::Display;
+use std::path::Path;
 use std::rc::Rc;
 use std::time::Duration;
 
@@ -118,7 +119,8 @@ impl SubjectCache {
         let path = match &options.path {
             Some(file) => {
                 let size = scene.bounds().size().length().max(1e-3);
-                CameraPath::read_csv(file, NEAR_SHARE * size, FAR_SHARE * size).map_err(failed)?
+                let path = CameraPath::read_csv(file, NEAR_SHARE * size, FAR_SHARE * size).map_err(failed)?;
+                first_frames(path, file, options.path_frames)?
             }
             None => CameraPath::for_scene(&scene, options.frames as usize, options.seed),
         };
@@ -144,6 +146,19 @@ impl SubjectCache {
         self.teams.insert(processors, team.clone());
         Ok(team)
     }
+}
+
+/// The frames asked for of a recorded path.
+fn first_frames(mut path: CameraPath, file: &Path, asked: Option<u32>) -> Result<CameraPath, MeasureError> {
+    if let Some(asked) = asked {
+        let there = path.frames.len();
+        if there < asked as usize {
+            let message = format!("{}: {there} frames, where --frames asks for {asked}", file.display());
+            return Err(MeasureError::Words(message));
+        }
+        path.frames.truncate(asked as usize);
+    }
+    Ok(path)
 }
 
 /// How long a measured team spins between frames: longer than the pauses of any experiment here, so
@@ -176,10 +191,11 @@ fn simulated(cell: &Cell, cache: &SubjectCache) -> Result<Simulated, MeasureErro
         let Some(constant) = key.strip_prefix("machine.").or_else(|| key.strip_prefix(&prefix)) else {
             continue;
         };
-        let number = value
-            .number()
-            .ok_or_else(|| MeasureError::Words(format!("setting `{key}` is `{value}`, expected a number")))?;
-        model.set(constant, number).map_err(|error| MeasureError::Words(error.to_string()))?;
+        let number = value.number().ok_or_else(|| {
+            MeasureError::Setting(format!("setting `{key}` is `{value}`, expected a number"))
+        })?;
+        let wrong = |error: ModelError| MeasureError::Setting(format!("setting `{key}`: {error}"));
+        model.set(constant, number).map_err(wrong)?;
     }
     Ok(Simulated::new(model))
 }

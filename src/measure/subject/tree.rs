@@ -61,7 +61,7 @@ impl<H: Borrow<M>, M: Machine> TreeSubject<H, M> {
     fn new(cell: &Cell, machine: H, asked: &Asked, options: &Options) -> Result<Self, MeasureError> {
         let on = machine.borrow();
         let scheme = Scheme::new(&cell.scheme, on, cell.processors as usize, of_scheme(cell))
-            .map_err(|error| MeasureError::Words(error.to_string()))?;
+            .map_err(|error| MeasureError::Setting(error.to_string()))?;
         let work = Synthetic::new(on, asked.nodes, asked.work_ns.clone(), options.seed);
         let pause = if on.is_native() { asked.pause } else { Duration::ZERO };
         Ok(TreeSubject { machine, work, scheme, pause, runs: options.frames as usize })

@@ -10,3 +10,4 @@ mod run;
 mod scene;
 mod schemes;
 mod structure;
+mod trace;

@@ -6,6 +6,7 @@ mod progress;
 mod run;
 mod stress;
 mod table;
+mod trace;
 mod words;
 
 use anyhow::Result;

@@ -4,7 +4,8 @@
 //! 1. [`Machine::start_trace`](super::Machine::start_trace) notes the time; 2. schemes, locks and machines
 //! mark changes ([`Processor::enter`](super::Processor::enter)); 3.
 //! [`Machine::take_trace`](super::Machine::take_trace) notes the time and makes spans of the marks. What lies
-//! before a processor's first mark and after its last is [`Activity::Barrier`].
+//! before a processor's first mark and after its last is [`Activity::Barrier`]; one that took part in no run
+//! was [`Activity::Idle`].
 //!
 //! A processor has room for a fixed number of marks. Those that find none are counted ([`Trace::lost`]) and
 //! its spans end there.
@@ -150,6 +151,10 @@ impl Marks {
 
     /// The spans between the start of the trace and its end.
     pub(super) fn spans(&self, reading: &Reading<impl Fn(u64) -> u64>) -> Vec<Span> {
+        if self.marks.is_empty() {
+            let idle = Span { activity: Activity::Idle, start: 0, end: reading.end, estimated: false };
+            return (reading.end > 0).then_some(idle).into_iter().collect();
+        }
         let ends_at = if self.lost > 0 { (reading.ticks)(self.full_at) } else { reading.end };
         let times = self.marks.iter().map(|&(at, _)| (reading.ticks)(at)).chain([ends_at]);
         let times: Vec<u64> = times.map(|at| at.min(reading.end)).collect();
@@ -225,7 +230,7 @@ mod tests {
 
     #[test]
     fn spans_cover_the_trace_from_end_to_end() {
-        assert_eq!(spans(&marked(9, &[]), 50), [(Barrier, 0, 50, false)]);
+        assert_eq!(spans(&marked(9, &[]), 50), [(Idle, 0, 50, false)]);
         let marks = marked(
             9,
             &[(110, Some(Sending)), (110, Some(Working)), (130, Some(Working)), (140, Some(Barrier))],

@@ -16,6 +16,7 @@ mod shelf;
 pub mod stress;
 pub mod subject;
 mod summary;
+mod trace;
 mod value;
 
 pub use experiment::Experiment;
@@ -25,6 +26,7 @@ pub use processors::processor_list;
 pub use run::{Ending, Open, Progress, run};
 pub use shelf::Shelf;
 pub use subject::{Known, Sample, Subject, SubjectCache};
+pub use trace::{FrameTrace, Tracer};
 pub use value::Value;
 
 use crate::record::RecordError;

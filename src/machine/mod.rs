@@ -83,6 +83,9 @@ pub trait Slot<T: Copy + Send>: Send + Sync {
 pub trait Processor {
     /// The word of its machine.
     type Word: Word;
+    /// Whether a task looked into for a timeline is marked within too: what a scheme does with the tasks it
+    /// emits, at once, is then sending and not work. Natively it stays work, as even the branches take time.
+    const MARKS_WITHIN: bool = false;
     /// This processor's number, `0 .. count()`.
     fn id(&self) -> usize;
     /// How many processors take part in this run.
@@ -108,8 +111,8 @@ pub trait Processor {
     fn enter(&self, activity: Activity) -> Activity {
         activity
     }
-    /// Takes up a task that stands for up to `size` tasks: from now on this processor works. Says whether the task is looked into, that is,
-    /// whether what happens within it and its end are to be marked with [`Processor::enter`]. Never, where
+    /// Takes up a task that stands for up to `size` tasks: from now on this processor works. Says whether the
+    /// task is looked into, that is, whether its end is to be marked with [`Processor::enter`]. Never, where
     /// no trace is being made; a machine on which marks take time lets short tasks pass, and counts the
     /// time between them as part of them.
     #[inline(always)]

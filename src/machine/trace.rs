@@ -1,11 +1,10 @@
 //! What the processors of a machine did while a frame ran: marks made on the way, spans drawn from them.
 //!
-//! A mark is a time and what the processor does from then on, so spans can neither overlap nor leave gaps:
-//! 1. [`Machine::start_trace`](super::Machine::start_trace) notes the time; 2. schemes, locks and machines
-//! mark changes ([`Processor::enter`](super::Processor::enter)); 3.
-//! [`Machine::take_trace`](super::Machine::take_trace) notes the time and makes spans of the marks. What lies
-//! before a processor's first mark and after its last is [`Activity::Barrier`]; one that took part in no run
-//! was [`Activity::Idle`].
+//! A mark is a time and what the processor does from then on, so spans can neither overlap nor leave gaps.
+//! [`Machine::start_trace`](super::Machine::start_trace) notes the time; schemes, locks and machines mark
+//! changes ([`Processor::enter`](super::Processor::enter)); [`Machine::take_trace`](super::Machine::take_trace)
+//! notes the time and makes spans of the marks. What lies before a processor's first mark and after its last
+//! is [`Activity::Barrier`]; one that took part in no run was [`Activity::Idle`].
 //!
 //! A processor has room for a fixed number of marks. Those that find none are counted ([`Trace::lost`]) and
 //! its spans end there.
@@ -176,23 +175,26 @@ impl Marks {
     }
 
     /// The share of a task's time that is the job's own, from the tasks looked into; each span there holds one
-    /// look at the clock.
+    /// look at the clock. The longest twentieth is left out: in one of those the system may have taken the
+    /// core away, for longer than all others took.
     fn working_share(&self, times: &[u64], look: u64) -> f64 {
-        let (mut working, mut sending, mut within) = (0, 0, false);
+        let mut tasks: Vec<(u64, u64)> = Vec::new();
+        let mut within = false;
         for (&(_, activity), time) in self.marks.iter().zip(times.windows(2)) {
             let took = (time[1] - time[0]).saturating_sub(look);
-            match activity {
-                Some(Activity::Working) => {
-                    working += took;
-                    within = true;
-                }
-                Some(Activity::Sending) if within => sending += took,
-                // For a lock, in the middle of a task.
-                Some(Activity::Waiting) => {}
-                _ => within = false,
+            match (activity, tasks.last_mut()) {
+                (Some(Activity::Working), _) => tasks.push((took, 0)),
+                (Some(Activity::Sending), Some((_, sending))) if within => *sending += took,
+                _ => {}
             }
+            // A wait may be in the middle of a task, for a lock.
+            let ends = matches!(activity, None | Some(Activity::Idle | Activity::Barrier));
+            within = !ends && (within || activity == Some(Activity::Working));
         }
-        if working == 0 && sending == 0 { 1.0 } else { working as f64 / (working + sending) as f64 }
+        tasks.sort_by_key(|(working, sending)| working + sending);
+        tasks.truncate(tasks.len() - tasks.len() / 20);
+        let (working, sending) = tasks.iter().fold((0, 0), |sum, task| (sum.0 + task.0, sum.1 + task.1));
+        if working + sending == 0 { 1.0 } else { working as f64 / (working + sending) as f64 }
     }
 }
 
@@ -257,6 +259,20 @@ mod tests {
         assert_eq!(found[4..6], [(Working, 101, 131, true), (Sending, 131, 141, true)]);
         let none = marked(9, &[(100, None)]);
         assert_eq!(spans(&none, 20), [(Working, 0, 20, true)], "all is work where nothing was looked into");
+    }
+
+    #[test]
+    fn a_core_taken_away_in_one_task_says_nothing_of_the_others() {
+        let mut marks = Marks::new(100);
+        let mut now = 100;
+        for task in 0..20 {
+            marks.mark(now, Some(Working));
+            marks.mark(now + 31, Some(Sending));
+            now += if task == 7 { 10_000 } else { 42 };
+        }
+        marks.mark(now, None);
+        let found = spans(&marks, now - 100 + 40);
+        assert_eq!(found[40..].iter().map(|span| span.2 - span.1).collect::<Vec<_>>(), [30, 10]);
     }
 
     #[test]

@@ -11,3 +11,4 @@ mod scene;
 mod schemes;
 mod structure;
 mod trace;
+mod trace_file;

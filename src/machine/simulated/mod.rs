@@ -145,6 +145,7 @@ pub struct VirtualProcessor {
 
 impl Processor for VirtualProcessor {
     type Word = SimulatedWord;
+    const MARKS_WITHIN: bool = true;
 
     fn id(&self) -> usize {
         self.id

@@ -5,11 +5,11 @@
 //! a lock nor an allocation.
 //!
 //! A look at the clock takes some ten nanoseconds and a task may take no longer. So a worker looks into one
-//! task of so many that looking takes about a hundredth of its time: 1. it marks the start of a task, its end,
-//! what happens within, and the start of the next; 2. from how long that took it reckons how many tasks to let
-//! pass, one unmarked stretch; 3. it looks into the next. Long tasks are looked into one by one, and so are
-//! those that stand for more than [`LARGE`] tasks, as they say nothing about others. What was work and what was sending in an unmarked stretch is told from the tasks looked into. Waits are always
-//! marked: who waits has the time.
+//! task of so many that looking takes less than a hundredth of its time: 1. it marks the start of a task, its
+//! end, and the start of the next; 2. from how long that took it reckons how many tasks to let pass, one
+//! unmarked stretch; 3. it looks into the next. Long tasks are looked into one by one, and so are those that
+//! stand for more than [`LARGE`] tasks, as they say nothing about others. What was work and what was sending
+//! in an unmarked stretch is told from the tasks looked into. Waits are always marked: who waits has the time.
 
 use crate::machine::trace::{Marks, Reading};
 use crate::machine::{Activity, Trace};
@@ -20,11 +20,11 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 /// Marks a worker has room for between taking one trace and the next: 256 KiB.
 const ROOM: usize = 1 << 14;
 /// How much time, in nanoseconds, goes by for each task looked into, where tasks are short.
-const CYCLE: u64 = 8_000;
+const CYCLE: u64 = 16_000;
 /// A task that may stand for more tasks than this is always looked into.
 pub(super) const LARGE: usize = 64;
 /// Tasks let pass at once, however short they are.
-const MOST_PASSED: u64 = 256;
+const MOST_PASSED: u64 = 512;
 
 /// The marks of one worker, and what it needs to make them.
 #[derive(Debug)]

@@ -115,12 +115,27 @@ impl<W: TreeWork> TreeWork for Billed<'_, W> {
     }
 
     #[inline]
-    fn visit<P: Processor>(&self, task: W::Task, found: &mut W::Found, cpu: &P, emit: impl FnMut(W::Task)) {
+    fn visit<P: Processor>(
+        &self,
+        task: W::Task,
+        found: &mut W::Found,
+        cpu: &P,
+        mut emit: impl FnMut(W::Task),
+    ) {
         cpu.keep_books();
-        if cpu.take_up(1) {
-            self.look_into(task, found, cpu, emit);
-        } else {
-            self.0.visit(task, found, cpu, emit);
+        let looked_into = cpu.take_up(1);
+        // One visit for both cases: a second one would make a scheme's locals live in memory in the first.
+        self.0.visit(task, found, cpu, |below| {
+            if P::MARKS_WITHIN && looked_into {
+                cpu.enter(Activity::Sending);
+            }
+            emit(below);
+            if P::MARKS_WITHIN && looked_into {
+                cpu.enter(Activity::Working);
+            }
+        });
+        if looked_into {
+            cpu.enter(Activity::Sending);
         }
     }
 
@@ -143,23 +158,6 @@ impl<W: TreeWork> TreeWork for Billed<'_, W> {
     #[inline]
     fn size(&self, task: W::Task) -> usize {
         self.0.size(task)
-    }
-}
-
-impl<W: TreeWork> Billed<'_, W> {
-    /// Visits a task whose inside is marked: what is emitted is the scheme's to deal with. Out of line, so
-    /// that a visit without a trace is not burdened with it.
-    #[cold]
-    #[inline(never)]
-    fn look_into<P: Processor>(
-        &self,
-        task: W::Task,
-        found: &mut W::Found,
-        cpu: &P,
-        mut emit: impl FnMut(W::Task),
-    ) {
-        self.0.visit(task, found, cpu, |below| cpu.during(Activity::Sending, || emit(below)));
-        cpu.enter(Activity::Sending);
     }
 }
 

@@ -9,8 +9,8 @@ use std::process::{Command, Output};
 const NAMES: [&str; 5] = ["working", "sending", "waiting", "idle", "barrier"];
 
 fn run(folder: &Path, words: &[&str]) -> Output {
-    let output = Command::new(env!("CARGO_BIN_EXE_apportion")).arg("run").args(words).current_dir(folder);
-    output.output().expect("the program starts")
+    let mut command = Command::new(env!("CARGO_BIN_EXE_apportion"));
+    command.arg("run").args(words).current_dir(folder).output().expect("the program starts")
 }
 
 #[track_caller]

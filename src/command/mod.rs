@@ -8,6 +8,7 @@ mod progress;
 mod run;
 mod stress;
 mod table;
+mod trace;
 mod words;
 
 use anyhow::{Context, Result};

@@ -209,6 +209,11 @@ pub(crate) struct RunWords {
     /// Folder for the run; with several experiments, a folder in it for each [default: results/NAME/TIME].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Write what each processor did to FILE, for Perfetto or chrome://tracing (Trace Event format), and into
+    /// the run's folder as timeline.json: one frame a cell, that of median time. Rows are taken without a
+    /// trace, so each cell goes through its path once more. With --resume, only cells run now are traced.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) trace: Option<PathBuf>,
     /// How to print the table.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub(crate) format: Format,

@@ -17,6 +17,7 @@ mod shelf;
 pub mod stress;
 pub mod subject;
 mod summary;
+mod trace;
 mod until;
 mod value;
 
@@ -27,6 +28,7 @@ pub use processors::processor_list;
 pub use run::{Ending, Open, Progress, run};
 pub use shelf::Shelf;
 pub use subject::{Known, Sample, Subject, SubjectCache};
+pub use trace::{FrameTrace, Tracer};
 pub use until::Until;
 pub use value::Value;
 

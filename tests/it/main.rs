@@ -12,3 +12,5 @@ mod run;
 mod scene;
 mod schemes;
 mod structure;
+mod trace;
+mod trace_file;

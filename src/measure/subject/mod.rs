@@ -4,7 +4,8 @@ mod cull;
 mod settings;
 mod tree;
 
-use super::{Cell, MeasureError, Options};
+use super::trace::Nearest;
+use super::{Cell, FrameTrace, MeasureError, Options};
 use crate::geometry::Camera;
 use crate::machine::simulated::{Model, ModelError};
 use crate::machine::threads::TeamSettings;
@@ -49,6 +50,16 @@ pub trait Subject {
     /// # Errors
     /// The run failed, or its result is not the oracle's.
     fn sample(&mut self, repeat: u32) -> Result<Vec<Sample>, MeasureError>;
+
+    /// Goes through the path once more, tracing each frame, and returns the one whose time comes nearest to
+    /// `time` ns; none where traces cannot be had. It ends early where that is met exactly.
+    ///
+    /// # Errors
+    /// As [`Subject::sample`].
+    fn trace(&mut self, time: f64) -> Result<Option<FrameTrace>, MeasureError> {
+        let _ = time;
+        Ok(None)
+    }
 }
 
 /// The names there are: what experiments and the command line may ask for.

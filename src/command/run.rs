@@ -3,11 +3,12 @@
 use super::list::EXPERIMENTS;
 use super::progress::Bar;
 use super::table::RESULTS;
+use super::trace::TraceFile;
 use super::words::{Format, RunWords};
 use super::{INTERRUPTED, print};
 use anyhow::{Context, Result};
 use apportion::measure::{
-    self, Ending, Experiment, Known, MeasureError, Plan, Selection, Shelf, SubjectCache, subject,
+    self, Ending, Experiment, Known, MeasureError, Plan, Selection, Shelf, SubjectCache, Tracer, subject,
 };
 use apportion::record::{Host, Meta, RowLog, RunFolder, export_csv, read_rows, run_id, utc_now, write_whole};
 use apportion::report::{self, Table};
@@ -26,16 +27,23 @@ pub(crate) fn run(words: &RunWords) -> Result<ExitCode> {
     // All words are checked before the first experiment takes its minutes.
     let prepared = words.names.iter().map(|name| Prepared::new(words, name, &shelf, &known));
     let prepared: Vec<Prepared> = prepared.collect::<Result<_>>()?;
+    let mut trace = words.trace.as_deref().map(TraceFile::new).transpose()?;
     let stop = stop_on_interrupt()?;
     let mut together = Table::default();
     for mut one in prepared {
         let folder = one.folder()?;
-        if let Ending::Stopped { left } = one.go(&folder, &stop)? {
+        let tracer = trace.is_some().then(Tracer::default);
+        let ending = one.go(&folder, &stop, tracer.as_ref());
+        let traced = trace.as_mut().zip(tracer).map(|(trace, tracer)| trace.add(&tracer, &folder));
+        // What the run says comes first; its cells are traced in any case.
+        let ending = ending?;
+        let traced = traced.transpose()?.unwrap_or_default();
+        if let Ending::Stopped { left } = ending {
             let place = folder.path().display();
             print::note(&format!("stopped with {left} cells missing in {place}; take it up with --resume"));
             return Ok(ExitCode::from(INTERRUPTED));
         }
-        let table = one.finish(&folder, words.format)?;
+        let table = one.finish(&folder, words.format, traced)?;
         together.lines.extend(table.lines);
     }
     if words.format != Format::Table {
@@ -134,7 +142,7 @@ impl Prepared {
         Ok(folder)
     }
 
-    fn go(&mut self, folder: &RunFolder, stop: &AtomicBool) -> Result<Ending> {
+    fn go(&mut self, folder: &RunFolder, stop: &AtomicBool, tracer: Option<&Tracer>) -> Result<Ending> {
         let mut meta = Meta::read(&folder.meta())?;
         let (mut log, kept) = RowLog::open(&folder.rows())?;
         let bar = Bar::new(&self.experiment.name);
@@ -142,7 +150,10 @@ impl Prepared {
             &self.plan,
             &meta.run,
             (&mut log, &kept),
-            &mut |cell, options| subject::open(cell, options, &mut self.cache),
+            &mut |cell, options| match tracer {
+                Some(tracer) => tracer.open(cell, options, &mut self.cache),
+                None => subject::open(cell, options, &mut self.cache),
+            },
             &mut |progress| bar.show(progress),
             stop,
         );
@@ -157,8 +168,9 @@ impl Prepared {
         Ok(ending)
     }
 
-    /// Draws the charts and makes the table; prints it, and what was written where, unless it is for a program.
-    fn finish(&self, folder: &RunFolder, format: Format) -> Result<Table> {
+    /// Draws the charts and makes the table; prints it, and what was written where (also the traces before), unless
+    /// it is for a program.
+    fn finish(&self, folder: &RunFolder, format: Format, traced: Vec<PathBuf>) -> Result<Table> {
         let rows = read_rows(&folder.rows())?;
         let mut table = report::table(&rows, &self.experiment.paper);
         table.hold_peaks_to(|machine| Plan::whole_counts(&self.experiment, machine, Host::here().cores));
@@ -169,6 +181,7 @@ impl Prepared {
             written.push(path);
         }
         let loose = self.selection.until.map(|percent| (percent, report::loose(&rows, percent)));
+        written.extend(traced);
         if format == Format::Table {
             print::line(&format!("{}\n\n{}", self.experiment.title, table.text()))?;
         }

@@ -30,6 +30,11 @@ pub(crate) enum Action {
         after_help = "Examples:\n  apportion table cull-large\n  apportion table cull-large --format csv > cull-large.csv"
     )]
     Table(TableWords),
+    /// Tell which scheme to take, on how many processors, for a scene of yours, and why.
+    #[command(
+        after_help = "Examples:\n  apportion advise --scene assembly.glb\n  apportion advise --scene factory-large --machine e4000 --processors 8 --explain"
+    )]
+    Advise(AdviseWords),
     /// Hold two runs against each other: for each cell a ratio, its interval and a verdict.
     #[command(after_help = COMPARE_EXAMPLES)]
     Compare(CompareWords),
@@ -110,6 +115,26 @@ pub(crate) enum Format {
     Csv,
 }
 
+/// The words of `advise`.
+#[derive(Debug, Args)]
+pub(crate) struct AdviseWords {
+    /// A file (glTF, GLB, OBJ) or the name of a generated scene.
+    #[arg(long, value_name = "FILE|NAME")]
+    pub(crate) scene: String,
+    /// What is to be done with it.
+    #[arg(long, default_value = "cull")]
+    pub(crate) job: String,
+    /// How many processors may be used [default: all the machine has].
+    #[arg(long, value_name = "N")]
+    pub(crate) processors: Option<u32>,
+    /// The machine to use them on.
+    #[arg(long, value_name = "threads|e4000|FILE.toml|...", default_value = "threads")]
+    pub(crate) machine: String,
+    /// Show all that was tried, the best first.
+    #[arg(long)]
+    pub(crate) explain: bool,
+}
+
 /// The words of `table`.
 #[derive(Debug, Args)]
 pub(crate) struct TableWords {
@@ -184,6 +209,11 @@ pub(crate) struct RunWords {
     /// Folder for the run; with several experiments, a folder in it for each [default: results/NAME/TIME].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Write what each processor did to FILE, for Perfetto or chrome://tracing (Trace Event format), and into
+    /// the run's folder as timeline.json: one frame a cell, that of median time. Rows are taken without a
+    /// trace, so each cell goes through its path once more. With --resume, only cells run now are traced.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) trace: Option<PathBuf>,
     /// How to print the table.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub(crate) format: Format,

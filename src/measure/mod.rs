@@ -4,6 +4,7 @@
 //! 2. [`Plan`] is the list of [`Cell`]s it asks for, narrowed by the [`Selection`] of the command line.
 //! 3. [`run()`] gives each cell to its [`Subject`], repeat by repeat, interleaved, and writes each row at once.
 
+pub mod advise;
 pub mod calibrate;
 mod experiment;
 pub mod inspect;
@@ -16,6 +17,7 @@ mod shelf;
 pub mod stress;
 pub mod subject;
 mod summary;
+mod trace;
 mod until;
 mod value;
 
@@ -26,6 +28,7 @@ pub use processors::processor_list;
 pub use run::{Ending, Open, Progress, run};
 pub use shelf::Shelf;
 pub use subject::{Known, Sample, Subject, SubjectCache};
+pub use trace::{FrameTrace, Tracer};
 pub use until::Until;
 pub use value::Value;
 

@@ -2,7 +2,7 @@
 //!
 //! A run is a folder: `rows.jsonl` (the log: one record, one write, one line), `rows.csv` (written whole from the
 //! log when the run ends), `meta.json` (what was run, where, when) and `experiment.toml` (the question as it was
-//! put). A row is one number with all that is needed to read it; nothing is told by a file's name or place.
+//! put). A traced run has `timeline.json` too. A row is one number with all that is needed to read it; nothing is told by a file's name or place.
 //!
 //! Invariant: a *cell* (one scheme, with its settings, on one machine with P processors, once) is either in the log
 //! with its last row, `cell_complete`, or it counts as never run: opening the log drops what is left of it.
@@ -16,6 +16,7 @@ mod meta;
 mod metric;
 mod row;
 pub mod statistics;
+mod trace_events;
 mod whole;
 
 pub use clock::{run_id, utc_now};
@@ -26,6 +27,7 @@ pub use log::{RowLog, read_rows};
 pub use meta::{Host, Meta};
 pub use metric::{Better, METRICS, Metric, metric};
 pub use row::{CellKey, Row, THREADS, settings_pairs};
+pub use trace_events::{Stretch, TracedFrame, check_trace_place, write_trace};
 pub use whole::write_whole;
 
 use std::path::{Path, PathBuf};

@@ -1,5 +1,6 @@
 //! One binary for all integration tests: oracles, goldens in virtual time, invariants, command line, house rules.
 
+mod advise;
 mod command_line;
 mod compare;
 mod experiment;
@@ -11,3 +12,5 @@ mod run;
 mod scene;
 mod schemes;
 mod structure;
+mod trace;
+mod trace_file;

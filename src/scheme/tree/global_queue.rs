@@ -12,13 +12,14 @@
 //! Settings: `lock`, `layout`, `insert` (`each`, the paper's reading, or `batch`), `capacity`.
 
 use super::{Share, Task, TreeWork};
-use crate::machine::{Layout, Machine, Processor, RunError, Shared, Word};
+use crate::machine::{Activity, Layout, Machine, Processor, RunError, Shared, Word};
 use crate::scheme::{SettingError, Settings};
 use crate::sync::LockedQueue;
 use std::sync::atomic::Ordering;
 
 pub(super) const SUMMARY: &str = "one locked queue for all (Paper II sec. 3.1)";
 pub(super) const NATIVE_ONLY: bool = false;
+pub(super) const LEARNS: bool = false;
 
 pub(super) struct GlobalQueue<M: Machine> {
     queue: LockedQueue<M>,
@@ -98,8 +99,10 @@ impl<M: Machine> GlobalQueue<M> {
                 }
             }
             // ORDERING: Relaxed: hints; the lock decides about tasks.
-            cpu.wait_until(&[length, over], || {
-                over.load(Ordering::Relaxed) != 0 || length.load(Ordering::Relaxed) != 0
+            cpu.during(Activity::Idle, || {
+                cpu.wait_until(&[length, over], || {
+                    over.load(Ordering::Relaxed) != 0 || length.load(Ordering::Relaxed) != 0
+                });
             });
             if over.load(Ordering::Relaxed) != 0 {
                 return None;

@@ -14,12 +14,13 @@
 
 use super::neighbours::neighbours;
 use super::{Share, Task, TreeWork};
-use crate::machine::{Layout, Machine, Processor, RunError, Seats, Shared, Word};
+use crate::machine::{Activity, Layout, Machine, Processor, RunError, Seats, Shared, Word};
 use crate::scheme::{SettingError, Settings};
 use std::sync::atomic::Ordering;
 
 pub(super) const SUMMARY: &str = "Chase-Lev deques, the idle steal (rival; Cilk-5 in Paper II sec. 6)";
 pub(super) const NATIVE_ONLY: bool = false;
+pub(super) const LEARNS: bool = false;
 
 pub(super) struct WorkStealing<M: Machine> {
     deques: Vec<Deque<M>>,
@@ -195,9 +196,11 @@ impl<M: Machine> WorkStealing<M> {
         idle.fetch_add(1, Ordering::AcqRel);
         let everybody = count as u64;
         loop {
-            cpu.wait_until(&watched, || {
-                // ORDERING: Acquire pairs with the counts above and below.
-                idle.load(Ordering::Acquire) == everybody || victims().any(|d| !d.is_empty())
+            cpu.during(Activity::Idle, || {
+                cpu.wait_until(&watched, || {
+                    // ORDERING: Acquire pairs with the counts above and below.
+                    idle.load(Ordering::Acquire) == everybody || victims().any(|d| !d.is_empty())
+                });
             });
             // ORDERING: Acquire, as above.
             if idle.load(Ordering::Acquire) == everybody {

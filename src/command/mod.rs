@@ -1,5 +1,7 @@
 //! The command line: thin. Words in, exit code out: 0 done, 1 the run failed, 2 the words were off.
 
+mod advise;
+mod compare;
 mod list;
 mod print;
 mod progress;
@@ -9,7 +11,7 @@ mod table;
 mod trace;
 mod words;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use apportion::measure::{MeasureError, inspect};
 use clap::{CommandFactory, Parser};
 use std::io::IsTerminal;
@@ -25,7 +27,7 @@ pub(crate) fn main() -> ExitCode {
         Ok(code) => code,
         Err(error) if print::is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("apportion: {}", told(&error));
+            print::note(&told(&error));
             let usage = error.downcast_ref::<MeasureError>().is_some_and(MeasureError::is_usage);
             ExitCode::from(if usage { 2 } else { 1 })
         }
@@ -39,18 +41,22 @@ fn told(error: &anyhow::Error) -> String {
     })
 }
 
+/// Tells a person at a terminal what takes its time.
+fn tell(what: &str) {
+    if std::io::stderr().is_terminal() {
+        eprintln!("measuring: {what}");
+    }
+}
+
 fn act(action: Action) -> Result<ExitCode> {
     match action {
         Action::List => list::list()?,
         Action::Run(words) => return run::run(&words),
         Action::Table(words) => table::table(&words)?,
+        Action::Advise(words) => advise::advise(&words)?,
+        Action::Compare(words) => compare::compare(&words)?,
         Action::Scene { scene } => print::line(&inspect::scene(&scene)?)?,
         Action::Machine { machine } => {
-            let mut tell = |what: &str| {
-                if std::io::stderr().is_terminal() {
-                    eprintln!("measuring: {what}");
-                }
-            };
             print::line(&inspect::machine(machine.as_deref(), &mut tell)?)?;
         }
         Action::Stress { what, processors, seconds } => {
@@ -58,10 +64,15 @@ fn act(action: Action) -> Result<ExitCode> {
         }
         Action::Completions { shell } => {
             let mut text = Vec::new();
-            clap_complete::generate(shell, &mut Words::command(), "apportion", &mut text);
+            clap_complete::generate(shell, &mut words::with_names()?, "apportion", &mut text);
             print::bytes(&text)?;
         }
-        Action::Man => {
+        Action::Man { out: Some(folder) } => {
+            std::fs::create_dir_all(&folder)
+                .and_then(|()| clap_mangen::generate_to(Words::command(), &folder))
+                .with_context(|| format!("cannot write to {}", folder.display()))?;
+        }
+        Action::Man { out: None } => {
             let mut text = Vec::new();
             clap_mangen::Man::new(Words::command()).render(&mut text)?;
             print::bytes(&text)?;

@@ -21,6 +21,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Runs the experiments named, one after the other.
 pub(crate) fn run(words: &RunWords) -> Result<ExitCode> {
     let (shelf, known) = (Shelf::open(Path::new(EXPERIMENTS))?, Known::here());
+    if let Some(twice) = words.names.iter().enumerate().find(|(at, name)| words.names[..*at].contains(name)) {
+        return Err(MeasureError::Words(format!("experiment {} is named twice", twice.1)).into());
+    }
     // All words are checked before the first experiment takes its minutes.
     let prepared = words.names.iter().map(|name| Prepared::new(words, name, &shelf, &known));
     let prepared: Vec<Prepared> = prepared.collect::<Result<_>>()?;
@@ -37,7 +40,7 @@ pub(crate) fn run(words: &RunWords) -> Result<ExitCode> {
         let traced = traced.transpose()?.unwrap_or_default();
         if let Ending::Stopped { left } = ending {
             let place = folder.path().display();
-            eprintln!("apportion: stopped with {left} cells missing in {place}; take it up with --resume");
+            print::note(&format!("stopped with {left} cells missing in {place}; take it up with --resume"));
             return Ok(ExitCode::from(INTERRUPTED));
         }
         let table = one.finish(&folder, words.format, traced)?;
@@ -102,7 +105,12 @@ impl Prepared {
         let plan = Plan::new(&experiment, &selection, known, Host::here().cores)?;
         let mut cache = SubjectCache::default();
         if resumed.is_none() {
-            open_each_kind(&plan, &mut cache)?;
+            open_each_kind(&plan, &mut cache).map_err(|error| match error {
+                MeasureError::Setting(message) => {
+                    MeasureError::Words(format!("{}: {message}", shelf.file(name)))
+                }
+                error => error,
+            })?;
         }
         Ok(Self { experiment, text, selection, plan, cache, out, resumed })
     }
@@ -164,16 +172,23 @@ impl Prepared {
     /// it is for a program.
     fn finish(&self, folder: &RunFolder, format: Format, traced: Vec<PathBuf>) -> Result<Table> {
         let rows = read_rows(&folder.rows())?;
-        let table = report::table(&rows, &self.experiment.paper);
+        let mut table = report::table(&rows, &self.experiment.paper);
+        table.hold_peaks_to(|machine| Plan::whole_counts(&self.experiment, machine, Host::here().cores));
         let mut written = vec![folder.rows(), folder.csv(), folder.meta()];
         for chart in report::speedup_charts(&self.experiment.title, &rows, &self.experiment.paper)? {
             let path = folder.path().join(chart.file_name);
             write_whole(&path, |out| out.write_all(chart.svg.as_bytes()))?;
             written.push(path);
         }
+        let loose = self.selection.until.map(|percent| (percent, report::loose(&rows, percent)));
         written.extend(traced);
         if format == Format::Table {
             print::line(&format!("{}\n\n{}", self.experiment.title, table.text()))?;
+        }
+        if let Some((percent, loose)) = loose {
+            tell_loose(percent, &loose);
+        }
+        if format == Format::Table {
             for path in written {
                 print::line(&format!("wrote {}", path.display()))?;
             }
@@ -182,12 +197,20 @@ impl Prepared {
     }
 }
 
-/// Opens one cell for each scene and scheme: a scene that cannot be read or a setting that is off must not leave a
+/// Says on standard error which speedups `--until` gave up on.
+fn tell_loose(percent: f64, loose: &[String]) {
+    if !loose.is_empty() {
+        print::note(&format!("time was up before these speedups were sure to {percent} %:"));
+        loose.iter().for_each(|cell| eprintln!("  {cell}"));
+    }
+}
+
+/// Opens one cell for each scene, machine, scheme and choice of settings: a scene that cannot be read or a setting that is off must not leave a
 /// folder behind that `--resume` would take up.
-fn open_each_kind(plan: &Plan, cache: &mut SubjectCache) -> Result<()> {
+fn open_each_kind(plan: &Plan, cache: &mut SubjectCache) -> Result<(), MeasureError> {
     let mut seen = HashSet::new();
     for cell in &plan.cells {
-        if seen.insert((&cell.scene, &cell.scheme)) {
+        if seen.insert((&cell.scene, &cell.machine, &cell.scheme, cell.settings_text())) {
             subject::open(cell, &plan.options, cache)?;
         }
     }

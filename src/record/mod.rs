@@ -71,6 +71,12 @@ pub enum RecordError {
         /// The folder.
         path: PathBuf,
     },
+    /// Another process is writing this run.
+    #[error("{} is being written by another run: wait for it to end", path.display())]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+    },
     /// There is no run to take up or to show.
     #[error("no {what} run of {experiment} in {}", path.display())]
     NoRun {

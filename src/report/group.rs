@@ -59,7 +59,7 @@ pub(crate) fn groups(rows: &[Row], metric: &str) -> Vec<Group> {
 }
 
 /// The settings that concern all schemes of the machine, and those of the scheme alone.
-fn split(settings: &str, machine: &str) -> (String, String) {
+pub(crate) fn split(settings: &str, machine: &str) -> (String, String) {
     let (common, own): (Vec<_>, Vec<_>) = settings_pairs(settings).partition(|(key, _)| {
         let owner = key.split('.').next().unwrap_or_default();
         owner == machine || COMMON.contains(&owner)

@@ -4,6 +4,8 @@
 //! choice of the settings that concern all schemes; within a group a *curve* is one scheme with its own settings.
 
 mod chart;
+pub mod comparison;
+mod doubt;
 mod group;
 mod marker;
 mod table;
@@ -11,7 +13,10 @@ mod text;
 mod winners;
 
 pub use chart::{Chart, speedup_charts};
+pub use comparison::{Comparison, compare};
+pub use doubt::loose;
 pub use table::{Line, Table, table};
+pub use text::wrap;
 
 /// What went wrong while a chart was drawn.
 #[derive(Debug, thiserror::Error)]

@@ -1,6 +1,8 @@
 //! One binary for all integration tests: oracles, goldens in virtual time, invariants, command line, house rules.
 
+mod advise;
 mod command_line;
+mod compare;
 mod experiment;
 mod house_rules;
 mod mock;

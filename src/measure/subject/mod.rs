@@ -16,6 +16,7 @@ use crate::scheme::tree::SCHEMES;
 use crate::structure::{AabbTree, SkipTree};
 use std::collections::HashMap;
 use std::fmt::Display;
+use std::path::Path;
 use std::rc::Rc;
 use std::time::Duration;
 
@@ -72,6 +73,8 @@ pub struct Known {
     pub machines: Vec<String>,
     /// Whether a scheme can run on a machine with so many processors; a plan leaves out what cannot.
     pub fits: fn(scheme: &str, machine: &str, processors: u32) -> bool,
+    /// Whether a scheme learns from run to run, so that its first path tells of something else than later ones.
+    pub learns: fn(scheme: &str) -> bool,
 }
 
 /// The jobs, by word: how each is made ready. The list is the table of contents.
@@ -89,6 +92,7 @@ impl Known {
                 let native_only = SCHEMES.iter().any(|known| known.name == scheme && known.native_only);
                 machine == THREADS || !native_only
             },
+            learns: |scheme| SCHEMES.iter().any(|known| known.name == scheme && known.learns),
         }
     }
 }
@@ -98,6 +102,7 @@ impl Known {
 pub struct SubjectCache {
     scenes: HashMap<String, Rc<Stage>>,
     teams: HashMap<u32, Rc<Threads>>,
+    models: HashMap<String, Model>,
 }
 
 /// A scene ready to be gone through: its tree and a camera for each frame.
@@ -111,6 +116,11 @@ const NEAR_SHARE: f32 = 1e-4;
 const FAR_SHARE: f32 = 2.0;
 
 impl SubjectCache {
+    /// Lets a name stand for this simulated machine, whatever preset is called so.
+    pub(super) fn provide(&mut self, name: &str, model: Model) {
+        self.models.insert(name.to_owned(), model);
+    }
+
     fn stage(&mut self, name: &str, options: &Options) -> Result<Rc<Stage>, MeasureError> {
         let key = format!("{name} {options:?}");
         if let Some(stage) = self.scenes.get(&key) {
@@ -120,7 +130,8 @@ impl SubjectCache {
         let path = match &options.path {
             Some(file) => {
                 let size = scene.bounds().size().length().max(1e-3);
-                CameraPath::read_csv(file, NEAR_SHARE * size, FAR_SHARE * size).map_err(failed)?
+                let path = CameraPath::read_csv(file, NEAR_SHARE * size, FAR_SHARE * size).map_err(failed)?;
+                first_frames(path, file, options.path_frames)?
             }
             None => CameraPath::for_scene(&scene, options.frames as usize, options.seed),
         };
@@ -148,6 +159,19 @@ impl SubjectCache {
     }
 }
 
+/// The frames asked for of a recorded path.
+fn first_frames(mut path: CameraPath, file: &Path, asked: Option<u32>) -> Result<CameraPath, MeasureError> {
+    if let Some(asked) = asked {
+        let there = path.frames.len();
+        if there < asked as usize {
+            let message = format!("{}: {there} frames, where --frames asks for {asked}", file.display());
+            return Err(MeasureError::Words(message));
+        }
+        path.frames.truncate(asked as usize);
+    }
+    Ok(path)
+}
+
 /// How long a measured team spins between frames: longer than the pauses of any experiment here, so
 /// that what is measured is the scheme; `auto` is what one takes where teams fall asleep.
 const SPIN: Duration = Duration::from_millis(20);
@@ -165,20 +189,24 @@ pub(super) fn scene(name: &str) -> Result<scene::Scene, MeasureError> {
 }
 
 /// The simulated machine a cell names, with the cell's settings.
-fn simulated(cell: &Cell) -> Result<Simulated, MeasureError> {
-    let mut model = Model::named(&cell.machine).map_err(|error| match error {
-        ModelError::Unknown { .. } => MeasureError::Words(error.to_string()),
-        error => failed(error),
-    })?;
+fn simulated(cell: &Cell, cache: &SubjectCache) -> Result<Simulated, MeasureError> {
+    let mut model = match cache.models.get(&cell.machine) {
+        Some(model) => model.clone(),
+        None => Model::named(&cell.machine).map_err(|error| match error {
+            ModelError::Unknown { .. } => MeasureError::Words(error.to_string()),
+            error => failed(error),
+        })?,
+    };
     let prefix = format!("{}.", cell.machine);
     for (key, value) in &cell.settings {
         let Some(constant) = key.strip_prefix("machine.").or_else(|| key.strip_prefix(&prefix)) else {
             continue;
         };
-        let number = value
-            .number()
-            .ok_or_else(|| MeasureError::Words(format!("setting `{key}` is `{value}`, expected a number")))?;
-        model.set(constant, number).map_err(|error| MeasureError::Words(error.to_string()))?;
+        let number = value.number().ok_or_else(|| {
+            MeasureError::Setting(format!("setting `{key}` is `{value}`, expected a number"))
+        })?;
+        let wrong = |error: ModelError| MeasureError::Setting(format!("setting `{key}`: {error}"));
+        model.set(constant, number).map_err(wrong)?;
     }
     Ok(Simulated::new(model))
 }

@@ -44,7 +44,7 @@ pub(super) fn open(
         let team = cache.team(cell.processors)?;
         Ok(Box::new(TreeSubject::<_, Threads>::new(cell, team, &asked, options)?))
     } else {
-        let machine = simulated(cell)?;
+        let machine = simulated(cell, cache)?;
         Ok(Box::new(TreeSubject::<_, Simulated>::new(cell, machine, &asked, options)?))
     }
 }
@@ -61,7 +61,7 @@ impl<H: Borrow<M>, M: Machine> TreeSubject<H, M> {
     fn new(cell: &Cell, machine: H, asked: &Asked, options: &Options) -> Result<Self, MeasureError> {
         let on = machine.borrow();
         let scheme = Scheme::new(&cell.scheme, on, cell.processors as usize, of_scheme(cell))
-            .map_err(|error| MeasureError::Words(error.to_string()))?;
+            .map_err(|error| MeasureError::Setting(error.to_string()))?;
         let work = Synthetic::new(on, asked.nodes, asked.work_ns.clone(), options.seed);
         let pause = if on.is_native() { asked.pause } else { Duration::ZERO };
         Ok(TreeSubject { machine, work, scheme, pause, runs: options.frames as usize })
@@ -86,7 +86,7 @@ impl<H: Borrow<M>, M: Machine> TreeSubject<H, M> {
         let machine = self.machine.borrow();
         let mut samples = Vec::new();
         let mut traversal = TraversalShare::default();
-        let (mut visited, mut imbalance) = (0, 0.0);
+        let (mut visited, mut imbalance, mut used) = (0, 0.0, 0);
         for run in 0..self.runs {
             if !self.pause.is_zero() {
                 std::thread::sleep(self.pause);
@@ -111,14 +111,17 @@ impl<H: Borrow<M>, M: Machine> TreeSubject<H, M> {
                 )));
             }
             visited += nodes;
+            used += shares.len();
             imbalance += load_imbalance(shares.iter().map(|share| share.visited));
             let tick = 1.0 / machine.ticks_per_nanosecond();
             if trace.as_mut().is_some_and(|nearest| nearest.look(time, run, traced, tick)) {
                 break;
             }
         }
-        samples.push(Sample::of_path("nodes_visited", visited as f64 / self.runs.max(1) as f64));
-        samples.push(Sample::of_path("load_imbalance", imbalance / self.runs.max(1) as f64));
+        let runs = self.runs.max(1) as f64;
+        samples.push(Sample::of_path("nodes_visited", visited as f64 / runs));
+        samples.push(Sample::of_path("load_imbalance", imbalance / runs));
+        samples.push(Sample::of_path("processors_used", used as f64 / runs));
         samples.extend(traversal.sample());
         Ok(samples)
     }

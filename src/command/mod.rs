@@ -3,6 +3,7 @@
 mod list;
 mod print;
 mod progress;
+mod report;
 mod run;
 mod stress;
 mod table;
@@ -43,6 +44,7 @@ fn act(action: Action) -> Result<ExitCode> {
         Action::List => list::list()?,
         Action::Run(words) => return run::run(&words),
         Action::Table(words) => table::table(&words)?,
+        Action::Report(words) => report::report(&words)?,
         Action::Scene { scene } => print::line(&inspect::scene(&scene)?)?,
         Action::Machine { machine } => {
             let mut tell = |what: &str| {

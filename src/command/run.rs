@@ -2,6 +2,7 @@
 
 use super::list::EXPERIMENTS;
 use super::progress::Bar;
+use super::report::write_charts;
 use super::table::RESULTS;
 use super::words::{Format, RunWords};
 use super::{INTERRUPTED, print};
@@ -9,8 +10,8 @@ use anyhow::{Context, Result};
 use apportion::measure::{
     self, Ending, Experiment, Known, MeasureError, Plan, Selection, Shelf, SubjectCache, subject,
 };
-use apportion::record::{Host, Meta, RowLog, RunFolder, export_csv, read_rows, run_id, utc_now, write_whole};
-use apportion::report::{self, Table};
+use apportion::record::{Host, Meta, RowLog, RunFolder, export_csv, run_id, utc_now, write_whole};
+use apportion::report::{self, Run, Table};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -151,14 +152,10 @@ impl Prepared {
 
     /// Draws the charts and makes the table; prints it, and what was written where, unless it is for a program.
     fn finish(&self, folder: &RunFolder, format: Format) -> Result<Table> {
-        let rows = read_rows(&folder.rows())?;
-        let table = report::table(&rows, &self.experiment.paper);
+        let run = Run::read(folder)?;
+        let table = report::table(&run.rows, &self.experiment.paper);
         let mut written = vec![folder.rows(), folder.csv(), folder.meta()];
-        for chart in report::speedup_charts(&self.experiment.title, &rows, &self.experiment.paper)? {
-            let path = folder.path().join(chart.file_name);
-            write_whole(&path, |out| out.write_all(chart.svg.as_bytes()))?;
-            written.push(path);
-        }
+        written.extend(write_charts(&run, folder)?);
         if format == Format::Table {
             print::line(&format!("{}\n\n{}", self.experiment.title, table.text()))?;
             for path in written {

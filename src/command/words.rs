@@ -22,6 +22,11 @@ pub(crate) enum Action {
     Run(RunWords),
     /// Show the newest finished run of an experiment: paper, simulated and measured, with the error of each.
     Table(TableWords),
+    /// Draw runs as one HTML page that needs nothing else: charts, tables, where the rows are from.
+    ///
+    /// Without folders: the newest finished run of each experiment in results/, committed reference runs included.
+    #[command(after_help = REPORT_EXAMPLES)]
+    Report(ReportWords),
     /// Tell what a scene holds.
     Scene {
         /// A file (glTF, GLB, OBJ) or the name of a generated scene.
@@ -53,6 +58,27 @@ pub(crate) enum Action {
     },
     /// Print the manual page.
     Man,
+}
+
+/// What `report --help` ends with.
+const REPORT_EXAMPLES: &str = "\
+Examples:
+  apportion report                                 all experiments, to results/report.html
+  apportion report --out cull.html results/cull-large/reference
+  apportion report --charts results/tree-work/20260301T120000Z    its SVG and Vega-Lite files anew, too";
+
+/// The words of `report`.
+#[derive(Debug, Args)]
+pub(crate) struct ReportWords {
+    /// The page's file.
+    #[arg(long, value_name = "FILE.html", default_value = "results/report.html")]
+    pub(crate) out: PathBuf,
+    /// Also draw the SVG files and Vega-Lite specifications of each run anew, beside its rows.
+    #[arg(long)]
+    pub(crate) charts: bool,
+    /// Folders of runs.
+    #[arg(value_name = "RUN_DIR")]
+    pub(crate) runs: Vec<PathBuf>,
 }
 
 /// How a table is printed.

@@ -104,6 +104,11 @@ impl RunFolder {
         self.path.join("meta.json")
     }
 
+    /// What each processor did, in the Trace Event format; there for runs that were traced.
+    pub fn timeline(&self) -> PathBuf {
+        self.path.join("timeline.json")
+    }
+
     /// The experiment's file as it was when the run began.
     pub fn experiment(&self) -> PathBuf {
         self.path.join("experiment.toml")

@@ -4,6 +4,7 @@ mod command_line;
 mod experiment;
 mod house_rules;
 mod mock;
+mod page;
 mod record;
 mod report;
 mod run;

@@ -9,6 +9,7 @@ mod field;
 mod pen;
 mod plot;
 mod sheet;
+mod ticked;
 
 pub(crate) use sheet::{looks, sheet, style};
 
@@ -17,12 +18,8 @@ use super::escape::attribute;
 use super::figure::{Body, Entry, Panel};
 use std::fmt::Display;
 
-/// The size of a panel among few, units.
-pub(crate) const WIDE: (u32, u32) = (700, 480);
-/// The size of a panel among many, units.
-pub(crate) const SMALL: (u32, u32) = (480, 340);
-/// From this many panels on each is small.
-const MANY: usize = 7;
+/// The sizes of panels, units: up to so many are so large.
+const SIZES: [(usize, (u32, u32)); 3] = [(2, (880, 580)), (6, (720, 480)), (usize::MAX, (480, 340))];
 /// Letters are so high, units.
 const LETTER: i32 = 24;
 
@@ -37,7 +34,7 @@ pub(crate) struct Drawn {
 
 /// The size of each panel, of so many.
 pub(crate) fn size(panels: usize) -> (u32, u32) {
-    if panels < MANY { WIDE } else { SMALL }
+    SIZES.iter().find(|(most, _)| panels <= *most).map_or((0, 0), |(_, size)| *size)
 }
 
 /// Draws a panel.

@@ -1,6 +1,7 @@
 //! Points over two axes.
 
 use super::pen::{AXIS, GRID, Pen};
+use super::ticked::Ticked;
 use super::{Drawn, LETTER, message, text};
 use crate::report::escape::attribute;
 use crate::report::figure::{Axis, Entry, Plot, Point, Scale, Series, Style};
@@ -9,8 +10,10 @@ use std::fmt::Write;
 
 /// Room beside the box where papers' peaks stand, units.
 const PEAKS: i32 = 76;
-/// The most that points at the same place are moved apart to either side, units.
-const DODGE: f64 = 34.0;
+/// The most that points at the same count are moved apart to either side, units.
+const DODGE: f64 = 84.0;
+/// Up to so many counts points are moved apart also where they have no intervals.
+const FEW: usize = 2;
 
 /// Where numbers stand on an axis.
 fn along(axis: &Axis, value: f64) -> f64 {
@@ -68,36 +71,24 @@ fn axes(plot: &Plot, size: (u32, u32), peaks: bool, out: &mut String) -> Result<
         .margin_right(if peaks { PEAKS } else { 16 })
         .x_label_area_size(76)
         .y_label_area_size(100)
-        .build_cartesian_2d(along(x, x.low)..along(x, x.high), along(y, y.low)..along(y, y.high))
+        .build_cartesian_2d(ticked(x, (size.0 as usize - 120) / 44), along(y, y.low)..along(y, y.high))
         .map_err(message)?;
-    let whole = |value: f64| (value - value.round()).abs() < 1e-6;
     let tick_x = |at: &f64| match &x.scale {
-        Scale::Names(names) if whole(*at) && *at > -0.5 => {
-            names.get(at.round() as usize).cloned().unwrap_or_default()
-        }
-        Scale::Names(_) => String::new(),
-        Scale::Doubling if whole(*at) => short(at.exp2()),
-        Scale::Doubling => String::new(),
-        Scale::Even if x.name == "processors" && !whole(*at) => String::new(),
-        Scale::Even => short(*at),
+        Scale::Names(names) => names.get(at.round() as usize).cloned().unwrap_or_default(),
+        Scale::Doubling => brief(at.exp2()),
+        Scale::Even => brief(*at),
     };
     let unit = if y.unit.is_empty() { String::new() } else { format!(", {}", y.unit) };
     let unit_x = if x.unit.is_empty() { String::new() } else { format!(", {}", x.unit) };
     let letters = ("sans-serif", LETTER);
-    // A label needs some 55 units; the library takes no more than these, at round numbers.
-    let labels = match &x.scale {
-        Scale::Names(names) => names.len() + 1,
-        _ => (size.0 as usize - 120) / 42,
-    };
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
         .bold_line_style(GRID)
         .axis_style(AXIS)
-        .x_labels(labels)
         .y_labels(size.1 as usize / 62)
         .x_label_formatter(&tick_x)
-        .y_label_formatter(&|at| short(*at))
+        .y_label_formatter(&|at| brief(*at))
         .x_desc(format!("{}{unit_x}", x.name))
         .y_desc(format!("{}{unit}", y.name))
         .axis_desc_style(letters)
@@ -113,23 +104,54 @@ fn axes(plot: &Plot, size: (u32, u32), peaks: bool, out: &mut String) -> Result<
     Ok(Place { box_: (across.start, across.end, down.start, down.end), at: Box::new(at) })
 }
 
+/// The horizontal axis, with at most so many ticks.
+fn ticked(axis: &Axis, most: usize) -> Ticked {
+    let range = along(axis, axis.low)..along(axis, axis.high);
+    let (first, last) = match &axis.scale {
+        Scale::Names(names) => (0, names.len() as i32 - 1),
+        Scale::Even if axis.name != "processors" => return Ticked::round(range, most),
+        // Counts of processors, or their powers of two: whole ones only.
+        _ => (range.start.ceil() as i32, range.end.floor() as i32),
+    };
+    let all = (last - first + 1).unsigned_abs() as usize;
+    let step = if matches!(axis.scale, Scale::Names(_)) { 1 } else { all.div_ceil(most.max(1)) };
+    Ticked::new(range, (first..=last).step_by(step.max(1)).map(f64::from).collect())
+}
+
+/// A number as an axis has room for it.
+fn brief(value: f64) -> String {
+    match value.abs() {
+        size if size >= 1e6 => short(value / 1e6) + "M",
+        size if size >= 1e4 => short(value / 1e3) + "k",
+        _ => short(value),
+    }
+}
+
 /// How far each series is moved aside, so that intervals at the same count do not hide one another.
 fn dodge(series: &[Series], width: i32) -> Vec<i32> {
-    let intervals = |series: &Series| series.points.iter().any(|point| point.high > point.low);
-    let curves: Vec<&Series> = series.iter().filter(|series| series.style == Style::Curve).collect();
-    if curves.len() < 2 || !curves.iter().any(|series| intervals(series)) {
+    let curves = || series.iter().filter(|series| series.style == Style::Curve);
+    let points = || curves().flat_map(|series| &series.points);
+    let mut counts: Vec<f64> = points().filter_map(|point| point.x).collect();
+    counts.sort_by(f64::total_cmp);
+    // A curve none of whose counts another has stays where it is.
+    let alone = |series: &Series| {
+        let shared = |point: &Point| counts.iter().filter(|count| Some(**count) == point.x).count() > 1;
+        !series.points.iter().any(shared)
+    };
+    let moved: Vec<bool> =
+        series.iter().map(|series| series.style == Style::Curve && !alone(series)).collect();
+    let number = moved.iter().filter(|moved| **moved).count();
+    let mut places = counts.clone();
+    places.dedup();
+    if number < 2 || !(places.len() <= FEW || points().any(|point| point.high > point.low)) {
         return vec![0; series.len()];
     }
-    let counts = curves.iter().map(|series| series.points.len()).max().unwrap_or(1).max(2);
-    let reach = DODGE.min(f64::from(width) / counts as f64 / 4.0);
-    let step = 2.0 * reach / (curves.len() - 1) as f64;
-    let mut number = 0.0;
-    let each = series.iter().map(|series| {
-        if series.style != Style::Curve {
-            return 0;
-        }
-        number += 1.0;
-        (-reach + step * (number - 1.0)).round() as i32
+    let reach = DODGE.min(f64::from(width) / places.len() as f64 / 4.0);
+    let step = 2.0 * reach / (number - 1) as f64;
+    let mut before = 0;
+    let each = moved.iter().map(|moved| {
+        before += usize::from(*moved);
+        if *moved { (step * (before - 1) as f64 - reach).round() as i32 } else { 0 }
     });
     each.collect()
 }

@@ -1,7 +1,7 @@
 //! How evenly the work is spread.
 
 use super::curves::{against_processors, curves, fit};
-use super::words::{Legend, number};
+use super::words::{Legend, count, number};
 use super::{Axis, Entry, Figure, Material, Panel, Scale};
 
 pub(crate) fn figures(material: &Material<'_>) -> Vec<Figure> {
@@ -49,5 +49,5 @@ fn says(panels: &[Panel], legend: &[Entry], what: &str) -> String {
         let place = if panels.len() == 1 { String::new() } else { format!(" ({})", end.0.heading) };
         format!("{} % with {}{place}", number(end.2.y), legend[end.1].label)
     };
-    format!("{what}, at P = {}: from {} to {}.", number(most), tell(least), tell(worst))
+    format!("{what}, at P = {}: from {} to {}.", count(Some(most)), tell(least), tell(worst))
 }

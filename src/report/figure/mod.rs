@@ -20,9 +20,9 @@ use super::marker::Look;
 
 /// Every kind of figure, in the order of a page; each gives as many as the rows have to show.
 const KINDS: &[fn(&Material<'_>) -> Vec<Figure>] = &[
+    plane::figures,
     speedup::figures,
     time::figures,
-    plane::figures,
     accuracy::figures,
     balance::figures,
     sharing::figures,

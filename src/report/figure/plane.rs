@@ -130,12 +130,17 @@ fn field(all: &[Spot], own: &[&Spot], (line, column): (&str, &str), entries: &mu
             entries.len() - 1
         });
         let margin = 100.0 * win.margin();
-        let text = if margin.is_finite() { format!("+{margin:.0} %") } else { "alone".to_owned() };
+        let text = if margin.is_finite() { format!("+{}", percent(margin)) } else { "alone".to_owned() };
         let (next, speedup) = (&win.next.0, number(win.next.1));
         let note = format!("{} {} x; next {next} {speedup} x", win.scheme, number(win.speedup));
         cells.push(Cell { column, line, entry, text, note });
     }
     Field { columns: (short(column).to_owned(), columns), lines: (short(line).to_owned(), lines), cells }
+}
+
+/// A margin; of a narrow one a digit more.
+fn percent(margin: f64) -> String {
+    if margin < 1.0 { format!("{margin:.1} %") } else { format!("{margin:.0} %") }
 }
 
 fn says(spots: &[Spot]) -> String {
@@ -148,8 +153,11 @@ fn says(spots: &[Spot]) -> String {
     let mut wins: Vec<_> = wins.into_iter().collect();
     wins.sort_by_key(|(_, (count, _))| std::cmp::Reverse(*count));
     let words = wins.iter().map(|(scheme, (count, margin))| {
-        let by =
-            if margin.is_finite() { format!(" (by up to {:.0} %)", 100.0 * margin) } else { String::new() };
+        let by = if margin.is_finite() {
+            format!(" (by up to {})", percent(100.0 * margin))
+        } else {
+            String::new()
+        };
         format!("{scheme} in {count}{by}")
     });
     format!("Of {} places: {}.", spots.len(), super::words::and(&words.collect::<Vec<_>>()))

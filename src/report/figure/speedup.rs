@@ -1,7 +1,7 @@
 //! Speedup against processors, with the paper's points and the ideal line.
 
 use super::curves::{against_processors, curves, fit};
-use super::words::{Legend, and, machines, number};
+use super::words::{Legend, and, count, machines, number};
 use super::{Axis, Body, Entry, Figure, Material, Panel, Point, Scale, Series, Style};
 use crate::record::{PaperFigure, settings_pairs};
 use crate::report::group::{Best, Group};
@@ -131,7 +131,7 @@ fn sentence(panel: &Panel, legend: &[Entry]) -> Option<String> {
     let peaks = peaks(panel, legend);
     let (best, peak) = peaks.iter().max_by(|a, b| a.1.y.total_cmp(&b.1.y))?;
     let (least, low) = peaks.iter().min_by(|a, b| a.1.y.total_cmp(&b.1.y))?;
-    let at = |point: &Point| format!("{} at P = {}", number(point.y), number(point.x.unwrap_or(1.0)));
+    let at = |point: &Point| format!("{} at P = {}", number(point.y), count(point.x));
     let mut text = if peak.y > 1.0 {
         format!("{}: {best} is fastest, {}", panel.heading, at(peak))
     } else {

@@ -2,7 +2,7 @@
 
 use super::curves::{against_processors, curves, fit};
 use super::speedup::{paper, point, steps};
-use super::words::{Legend, number};
+use super::words::{Legend, count, machines, number};
 use super::{Axis, Body, Figure, Material, Panel, Point, Scale, Series, Style};
 use crate::report::group::groups;
 
@@ -78,20 +78,20 @@ fn serial(panel: &Panel, legend: &Legend) -> Option<f64> {
     points.iter().find(|point| point.x == Some(1.0)).map(|point| point.y)
 }
 
+/// The shortest of each machine: those of a machine of 1999 are not held against those of another.
 fn says(panels: &[Panel], legend: &Legend, unit: &str) -> String {
-    let all = panels.iter().flat_map(|panel| {
-        curves(panel).flat_map(move |(entry, points)| points.iter().map(move |point| (panel, entry, point)))
-    });
-    let Some((panel, entry, point)) = all.min_by(|a, b| a.2.y.total_cmp(&b.2.y)) else {
-        return String::new();
+    let of_machine = |machine: &str| {
+        let own: Vec<&Panel> = panels.iter().filter(|panel| panel.machine == machine).collect();
+        let all = own.iter().flat_map(|panel| {
+            curves(panel)
+                .flat_map(move |(entry, points)| points.iter().map(move |point| (*panel, entry, point)))
+        });
+        let (panel, entry, point) = all.min_by(|a, b| a.2.y.total_cmp(&b.2.y))?;
+        let serial = serial(panel, legend).map(|serial| format!("; serial takes {}", number(serial)));
+        let place = if own.len() == 1 { super::words::machine(machine) } else { panel.heading.clone() };
+        let (label, count) = (&legend.entries[entry].label, count(point.x));
+        let serial = serial.filter(|_| *label != "serial").unwrap_or_default();
+        Some(format!("{place}: shortest is {} {unit}, {label} at P = {count}{serial}.", number(point.y)))
     };
-    let serial = serial(panel, legend).map(|serial| format!(", where serial takes {}", number(serial)));
-    let where_ = if panels.len() == 1 { String::new() } else { format!(" ({})", panel.heading) };
-    format!(
-        "Shortest: {} with {} at P = {}{}{where_}; all in {unit}.",
-        number(point.y),
-        legend.entries[entry].label,
-        number(point.x.unwrap_or(1.0)),
-        serial.unwrap_or_default(),
-    )
+    machines(panels).into_iter().filter_map(of_machine).collect::<Vec<_>>().join(" ")
 }

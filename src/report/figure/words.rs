@@ -19,6 +19,11 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
+/// A count, which has no digits behind the point.
+pub(crate) fn count(value: Option<f64>) -> String {
+    format!("{:.0}", value.unwrap_or(1.0))
+}
+
 /// The key without its owner.
 pub(crate) fn bare(key: &str) -> &str {
     key.split_once('.').map_or(key, |(_, bare)| bare)

@@ -17,7 +17,9 @@ pub(super) fn html(section: &str, folder: &str, figure: &Figure) -> Result<Strin
     let mut html = format!("<figure id=\"{id}\" data-kind=\"{}\">\n", anchor(&figure.kind));
     let _ = writeln!(html, "<h3>{}</h3>", attribute(&figure.title));
     html.push_str(&legend(figure));
-    let _ = writeln!(html, "<div class=\"panels\" style=\"--w:{}px\">", size.0 / 2);
+    // Headings of many panels take up to three lines; drawings stand level all the same.
+    let many = if figure.panels.len() > 6 { " many" } else { "" };
+    let _ = writeln!(html, "<div class=\"panels{many}\" style=\"--w:{}px\">", size.0 / 2);
     let mut pair = None;
     for one in &figure.panels {
         if pair != Some(one.pair) {
@@ -29,7 +31,7 @@ pub(super) fn html(section: &str, folder: &str, figure: &Figure) -> Result<Strin
     html.push_str("</div></div>\n");
     let _ = writeln!(
         html,
-        "<figcaption><p><b>{}</b> {}</p><p class=\"files\">{}</p></figcaption>",
+        "<figcaption><p>{} <span class=\"how\">{}</span></p><p class=\"files\">{}</p></figcaption>",
         attribute(&figure.says),
         attribute(&figure.how),
         links(folder, figure)

@@ -65,7 +65,7 @@ pub(super) fn table(sections: &[Section<'_>]) -> String {
 }
 
 fn highest<'a>(lines: impl Iterator<Item = &'a Line>, value: impl Fn(&Line) -> Option<f64>) -> String {
-    let parallel = lines.filter(|line| line.scheme != "serial");
+    let parallel = lines.filter(|line| line.scheme != "serial" && line.processors != Some(1));
     let valued = parallel.filter_map(|line| value(line).map(|speedup| (line, speedup)));
     let best = valued.max_by(|a, b| a.1.total_cmp(&b.1));
     best.map_or("not run".to_owned(), |(line, speedup)| {

@@ -78,7 +78,8 @@ impl Look {
         Self {
             colour,
             mark: (mark + variant) % MARKS.len(),
-            dash: variant % DASHES.len(),
+            // Another round of marks begins with another dash.
+            dash: (variant + variant / MARKS.len()) % DASHES.len(),
             shade: variant / DASHES.len() % SHADES.len(),
         }
     }

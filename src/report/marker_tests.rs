@@ -67,8 +67,8 @@ fn colours_are_told_apart_by_every_eye_on_both_grounds() {
 fn a_look_belongs_to_a_name() {
     let looks: BTreeSet<Look> = NAMED.iter().map(|(name, ..)| Look::of(name, 0)).collect();
     assert_eq!(looks.len(), NAMED.len(), "two schemes look the same");
-    let settings: BTreeSet<Look> = (0..8).map(|variant| Look::of("hybrid", variant)).collect();
-    assert_eq!(settings.len(), 8, "two settings look the same");
+    let settings: BTreeSet<Look> = (0..24).map(|variant| Look::of("hybrid", variant)).collect();
+    assert_eq!(settings.len(), 24, "two settings look the same");
     assert!(settings.iter().all(|look| look.colour == Look::of("hybrid", 0).colour));
     assert_eq!(Look::of("of tomorrow", 0), Look::of("of tomorrow", 0));
 }

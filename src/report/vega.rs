@@ -58,11 +58,20 @@ fn points(figure: &Figure) -> Vec<Value> {
             let Some(entry) = series.entry else { continue };
             for point in &series.points {
                 let Some(x) = point.x.map(|x| place(&plot.x, x)) else { continue };
-                let paper = series.style == Style::Paper;
-                values.push(json!({
-                    "panel": panel.heading, "curve": figure.legend[entry].label, "paper": paper, "x": x,
-                    "y": point.y, "low": point.low, "high": point.high, "note": point.note,
-                }));
+                let mut value = json!({
+                    "panel": panel.heading, "curve": figure.legend[entry].label, "x": x, "y": point.y,
+                });
+                // What most points have not is left out: there are many points.
+                if series.style == Style::Paper {
+                    value["paper"] = json!(true);
+                }
+                if point.high > point.low {
+                    (value["low"], value["high"]) = (json!(point.low), json!(point.high));
+                }
+                if !point.note.is_empty() {
+                    value["note"] = json!(point.note);
+                }
+                values.push(value);
             }
         }
     }
@@ -93,7 +102,7 @@ fn plot_layers(plot: &Plot) -> Vec<Value> {
     let ours = json!([{ "filter": "!datum.paper" }]);
     let mut layers = vec![
         json!({
-            "transform": ours, "mark": "rule",
+            "transform": [{ "filter": "isValid(datum.low)" }], "mark": "rule",
             "encoding": { "x": x, "y": { "field": "low", "type": "quantitative" }, "y2": { "field": "high" } },
         }),
         json!({ "transform": ours, "mark": { "type": "point", "filled": true }, "encoding": { "x": x, "y": y } }),

@@ -51,18 +51,18 @@ fn run() -> Run {
                 for &count in counts {
                     let time =
                         1e6 * work * (share + (1.0 - share) / f64::from(count)) / f64::from(boxes).sqrt();
-                    let mut add = |metric, value| {
-                        rows.push(row(scheme, &settings, machine, count, metric, value));
+                    let mut add = |frame, metric, value| {
+                        let row = row(scheme, &settings, machine, count, metric, value);
+                        rows.push(Row { frame, ..row });
                     };
-                    add("nodes_visited", visited);
-                    add("nodes_visible", 42.0);
-                    add("total_time", time);
-                    add("speedup", 1e6 * work / f64::from(boxes).sqrt() / time);
-                    add("load_imbalance", f64::from(count));
-                    add("traversal_share", 3.0);
+                    add(None, "nodes_visited", visited);
+                    add(None, "nodes_visible", 42.0);
+                    add(None, "total_time", time);
+                    add(None, "speedup", 1e6 * work / f64::from(boxes).sqrt() / time);
+                    add(None, "load_imbalance", f64::from(count));
+                    add(None, "traversal_share", 3.0);
                     for frame in 0..5 {
-                        add("frame_time", time * (1.0 + f64::from(frame)) / 15.0);
-                        rows.last_mut().expect("a row was added").frame = Some(frame);
+                        add(Some(frame), "frame_time", time * (1.0 + f64::from(frame)) / 15.0);
                     }
                 }
             }

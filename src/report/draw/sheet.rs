@@ -62,7 +62,7 @@ pub(crate) fn looks(
 /// # Errors
 /// The drawing library refused.
 pub(crate) fn sheet(title: &str, figure: &Figure, panels: &[&Panel]) -> Result<String, ReportError> {
-    let lone = panels.len() == 1 && matches!(panels[0].body, Body::Plot(_));
+    let lone = panels.len() == 1 && !panels[0].place.is_empty();
     let size = if lone { LONE } else { size(panels.len()) };
     let drawn: Result<Vec<Drawn>, _> = panels.iter().map(|one| panel(one, &figure.legend, size)).collect();
     let drawn = drawn?;
@@ -74,7 +74,8 @@ pub(crate) fn sheet(title: &str, figure: &Figure, panels: &[&Panel]) -> Result<S
         for (number, (one, drawn)) in headings.iter().zip(line).enumerate() {
             let x = GAP / 2 + number as i32 * (wide + GAP);
             let (width, height) = drawn.size;
-            body.push_str(&text(x, y + 26, "b", &one.heading));
+            let heading = if lone { &one.place } else { &one.heading };
+            body.push_str(&text(x, y + 26, "b", heading));
             let _ = write!(
                 body,
                 "<svg x=\"{x}\" y=\"{}\" width=\"{width}\" height=\"{height}\">{}</svg>",

@@ -126,6 +126,7 @@ fn panel(
     series.insert(0, Series { style: Style::Front, entry: None, points: front });
     Panel {
         heading: format!("{}, {scene}", machine(place)),
+        place: String::new(),
         file: format!("{place}-{scene}-{}", metric.name),
         machine: place.to_owned(),
         group: None,

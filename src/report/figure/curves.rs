@@ -1,6 +1,6 @@
 //! Numbers against processors: what speedup, time, balance and sharing have in common.
 
-use super::words::{Legend, choices, chosen, file, heading};
+use super::words::{Legend, choices, chosen, file, full, heading};
 use super::{Axis, Body, Material, Panel, Plot, Point, Scale, Series, Style, pair};
 use crate::report::group::{Group, groups};
 
@@ -37,6 +37,7 @@ pub(crate) fn against_processors(
         let plot = Plot { x: processors(&series), y: y.clone(), series };
         panels.push(Panel {
             heading: heading(group, &material.groups),
+            place: full(group),
             file: file(group),
             machine: group.machine.clone(),
             group: Some(place),

@@ -159,6 +159,7 @@ fn panel(
     let pairs: Vec<_> = material.groups.iter().map(pair).collect();
     (!series.is_empty()).then(|| Panel {
         heading: format!("{}, P = {most}", heading(group, &material.groups)),
+        place: super::words::full(group),
         file: file(group),
         machine: group.machine.clone(),
         group: Some(place),

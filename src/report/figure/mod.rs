@@ -86,6 +86,9 @@ pub(crate) struct Entry {
 pub(crate) struct Panel {
     /// What tells it from the others: `e4000, work_ns=20-60`.
     pub(crate) heading: String,
+    /// The same in full, for where it stands alone: `factory-large on e4000, simulated, history=distances`;
+    /// empty where it never does.
+    pub(crate) place: String,
     /// The same in full, for the name of a file: `e4000-factory-large-job.history-distances`.
     pub(crate) file: String,
     pub(crate) machine: String,

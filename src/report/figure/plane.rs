@@ -48,6 +48,7 @@ pub(crate) fn figures(material: &Material<'_>) -> Vec<Figure> {
         Panel {
             file: heading.replace([',', ' '], "").replace('=', "-"),
             heading,
+            place: String::new(),
             machine: place.clone(),
             group: None,
             pair: number,

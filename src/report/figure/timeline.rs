@@ -103,6 +103,7 @@ fn panel(number: usize, heading: String, events: &[&Event]) -> Panel {
     Panel {
         file: format!("cell-{number}"),
         heading,
+        place: String::new(),
         machine: String::new(),
         group: None,
         pair: number,

@@ -11,7 +11,7 @@ pub(crate) fn number(value: f64) -> String {
     let size = value.abs();
     match size {
         0.0 => "0".to_owned(),
-        _ if size >= 1e7 || size < 1e-4 => format!("{value:.2e}"),
+        _ if !(1e-4..1e7).contains(&size) => format!("{value:.2e}"),
         _ if size >= 100.0 => format!("{value:.0}"),
         _ if size >= 10.0 => format!("{value:.1}"),
         _ if size >= 0.1 => format!("{value:.2}"),
@@ -48,6 +48,12 @@ pub(crate) fn heading(group: &Group, groups: &[Group]) -> String {
     let settings = settings_pairs(&group.settings).filter(|pair| differs(pair) && !own(pair.0));
     words.extend(settings.map(|(key, value)| format!("{}={value}", bare(key))));
     words.join(", ")
+}
+
+/// A group in full, for where it stands alone.
+pub(crate) fn full(group: &Group) -> String {
+    let settings = settings_pairs(&group.settings).map(|(key, value)| format!(", {}={value}", bare(key)));
+    format!("{} on {}{}", group.scene, machine(&group.machine), settings.collect::<String>())
 }
 
 /// Machine, scene and settings, with what is awkward in a file's name left out.

@@ -62,9 +62,12 @@ pub fn page(runs: &[Run]) -> Result<String, ReportError> {
     for section in &sections {
         html.push_str(&section.html()?);
     }
+    // One scope for both files, out of the way of whatever a browser adds to the page.
     let _ = write!(
         html,
-        "</main>\n<div id=\"tip\" role=\"status\" aria-live=\"polite\" hidden></div>\n<script>\n{}</script>\n</body>\n</html>\n",
+        "</main>\n<div id=\"tip\" role=\"status\" aria-live=\"polite\" hidden></div>\n<script>\n\"use strict\";\n{{\n{}{}}}\n\
+         </script>\n</body>\n</html>\n",
+        include_str!("chart.js"),
         include_str!("page.js")
     );
     Ok(html)

@@ -47,7 +47,8 @@ pub(super) fn table(sections: &[Section<'_>]) -> String {
         let own = || table.lines.iter().filter(|line| line.figure.is_none());
         let simulated = highest(own().filter(|line| line.machine != THREADS), |line| line.simulated);
         let measured = highest(own(), |line| line.measured);
-        let errors: Vec<f64> = table.lines.iter().filter_map(|line| line.error_simulated).collect();
+        let errors: Vec<f64> =
+            table.lines.iter().filter_map(|line| line.error_simulated).filter(|e| e.is_finite()).collect();
         let error = if errors.is_empty() {
             "none printed".to_owned()
         } else {

@@ -1,5 +1,6 @@
 //! The command line: thin. Words in, exit code out: 0 done, 1 the run failed, 2 the words were off.
 
+mod advise;
 mod list;
 mod print;
 mod progress;
@@ -39,19 +40,22 @@ fn told(error: &anyhow::Error) -> String {
     })
 }
 
+/// Tells a person at a terminal what takes its time.
+fn tell(what: &str) {
+    if std::io::stderr().is_terminal() {
+        eprintln!("measuring: {what}");
+    }
+}
+
 fn act(action: Action) -> Result<ExitCode> {
     match action {
         Action::List => list::list()?,
         Action::Run(words) => return run::run(&words),
         Action::Table(words) => table::table(&words)?,
         Action::Report(words) => report::report(&words)?,
+        Action::Advise(words) => advise::advise(&words)?,
         Action::Scene { scene } => print::line(&inspect::scene(&scene)?)?,
         Action::Machine { machine } => {
-            let mut tell = |what: &str| {
-                if std::io::stderr().is_terminal() {
-                    eprintln!("measuring: {what}");
-                }
-            };
             print::line(&inspect::machine(machine.as_deref(), &mut tell)?)?;
         }
         Action::Stress { what, processors, seconds } => {

@@ -27,6 +27,8 @@ pub(crate) enum Action {
     /// Without folders: the newest finished run of each experiment in results/, committed reference runs included.
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportWords),
+    /// Tell which scheme to take, on how many processors, for a scene of yours, and why.
+    Advise(AdviseWords),
     /// Tell what a scene holds.
     Scene {
         /// A file (glTF, GLB, OBJ) or the name of a generated scene.
@@ -90,6 +92,26 @@ pub(crate) enum Format {
     Json,
     /// Comma-separated values with a header.
     Csv,
+}
+
+/// The words of `advise`.
+#[derive(Debug, Args)]
+pub(crate) struct AdviseWords {
+    /// A file (glTF, GLB, OBJ) or the name of a generated scene.
+    #[arg(long, value_name = "FILE|NAME")]
+    pub(crate) scene: String,
+    /// What is to be done with it.
+    #[arg(long, default_value = "cull")]
+    pub(crate) job: String,
+    /// How many processors may be used [default: all the machine has].
+    #[arg(long, value_name = "N")]
+    pub(crate) processors: Option<u32>,
+    /// The machine to use them on.
+    #[arg(long, value_name = "threads|e4000|FILE.toml|...", default_value = "threads")]
+    pub(crate) machine: String,
+    /// Show all that was tried, the best first.
+    #[arg(long)]
+    pub(crate) explain: bool,
 }
 
 /// The words of `table`.

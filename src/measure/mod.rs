@@ -4,6 +4,7 @@
 //! 2. [`Plan`] is the list of [`Cell`]s it asks for, narrowed by the [`Selection`] of the command line.
 //! 3. [`run()`] gives each cell to its [`Subject`], repeat by repeat, interleaved, and writes each row at once.
 
+pub mod advise;
 pub mod calibrate;
 mod experiment;
 pub mod inspect;

@@ -77,6 +77,9 @@ pub struct Plan {
     pub cells: Vec<Cell>,
     /// What holds for all of them.
     pub options: Options,
+    /// Whether simulated cells too are warmed up by a path that is not recorded: one of their schemes
+    /// learns, and the others are to have the caches as warm.
+    pub warms_up: bool,
 }
 
 impl Plan {
@@ -135,7 +138,8 @@ impl Plan {
                 format!("nothing of experiment {} can run on these machines and processors", experiment.name);
             return Err(MeasureError::Words(message));
         }
-        Ok(Self { cells, options })
+        let warms_up = cells.iter().any(|cell| (known.learns)(&cell.scheme));
+        Ok(Self { cells, options, warms_up })
     }
 
     /// The serial cell that a cell's speedup is held against: same scene, machine and settings of the job and machine.

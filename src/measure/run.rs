@@ -38,7 +38,7 @@ pub struct Progress<'a> {
 /// Runs the plan's cells that are not in the log yet; `kept` are the rows that are.
 ///
 /// Repeats are interleaved: all cells once, then all again, so that a slow minute of the computer falls on all of them.
-/// A cell on real threads is warmed up by one path that is not recorded. `stop` ends the run after the cell in hand.
+/// Cells on real threads, and all where one of the schemes learns, are warmed up by one path that is not recorded. `stop` ends the run after the cell in hand.
 ///
 /// # Errors
 /// A cell cannot be opened or fails, or a row cannot be written; the rows of all cells before it are kept.
@@ -115,7 +115,11 @@ impl Runner<'_, '_> {
     fn take(&mut self, index: usize, repeat: u32) -> Result<Vec<Sample>, MeasureError> {
         let cell = &self.plan.cells[index];
         if cell.is_simulated() {
-            return (self.open)(cell, &self.plan.options)?.sample(repeat);
+            let mut subject = (self.open)(cell, &self.plan.options)?;
+            if self.plan.warms_up {
+                subject.sample(repeat)?;
+            }
+            return subject.sample(repeat);
         }
         if !self.ready.contains_key(&index) {
             let mut subject = (self.open)(cell, &self.plan.options)?;

@@ -99,6 +99,12 @@ pub const METRICS: &[Metric] = {
             Lower,
             "Share of the processors' time that went into finding and handing over work, not into the work itself.",
         ),
+        declare(
+            "processors_used",
+            "processors",
+            Lower,
+            "Processors that took part in a frame, on average: a scheme may leave some out.",
+        ),
         declare("nodes_visited", "nodes", Lower, "Nodes of the structure the job looked at.")
             .gives_up(AccuracyKind::Structure),
         declare("nodes_visible", "nodes", Higher, "Leaf nodes found visible."),

@@ -50,6 +50,29 @@ pub fn interval(numbers: &[f64], seed: u64) -> Option<Interval> {
     Some(Interval { median, low: medians[DRAWS / 40], high: medians[DRAWS - 1 - DRAWS / 40] })
 }
 
+/// The sum of one list over the sum of another, pair by pair the same thing under two conditions, with its 95 %
+/// percentile bootstrap interval over the pairs; none of no pairs, or where the lists differ in length.
+pub fn ratio_interval(over: &[f64], under: &[f64], seed: u64) -> Option<Interval> {
+    if over.len() != under.len() || over.is_empty() {
+        return None;
+    }
+    let mut random = SplitMix(seed);
+    let mut ratios: Vec<f64> = (0..DRAWS)
+        .map(|_| {
+            let (mut above, mut below) = (0.0, 0.0);
+            for _ in 0..over.len() {
+                let pair = random.below(over.len());
+                above += over[pair];
+                below += under[pair];
+            }
+            above / below
+        })
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    let median = over.iter().sum::<f64>() / under.iter().sum::<f64>();
+    Some(Interval { median, low: ratios[DRAWS / 40], high: ratios[DRAWS - 1 - DRAWS / 40] })
+}
+
 /// SplitMix64 (Steele, Lea and Flood, OOPSLA 2014): small, seeded, good enough to draw from a list.
 struct SplitMix(u64);
 
@@ -66,7 +89,20 @@ impl SplitMix {
 
 #[cfg(test)]
 mod tests {
-    use super::{interval, median};
+    use super::{interval, median, ratio_interval};
+
+    #[test]
+    fn the_ratio_of_sums_lies_in_its_interval() {
+        let under: Vec<f64> = (1..=30).map(f64::from).collect();
+        let twice: Vec<f64> = under.iter().map(|number| 2.0 * number).collect();
+        let exact = ratio_interval(&twice, &under, 1).expect("there are pairs");
+        assert_eq!((exact.low, exact.median, exact.high), (2.0, 2.0, 2.0));
+        let noisy: Vec<f64> = under.iter().map(|number| number * (1.5 + number % 3.0)).collect();
+        let ratio = ratio_interval(&noisy, &under, 1).expect("there are pairs");
+        assert!(1.5 < ratio.low && ratio.low < ratio.median && ratio.median < ratio.high, "{ratio:?}");
+        assert_eq!(ratio_interval(&[], &[], 1), None);
+        assert_eq!(ratio_interval(&[1.0], &[], 1), None);
+    }
 
     #[test]
     fn medians_of_none_one_even_and_odd() {

@@ -1,5 +1,6 @@
 //! One binary for all integration tests: oracles, goldens in virtual time, invariants, command line, house rules.
 
+mod advise;
 mod command_line;
 mod experiment;
 mod house_rules;

@@ -53,7 +53,7 @@ pub(super) fn open(
         let team = cache.team(cell.processors)?;
         Ok(Box::new(CullSubject::<_, Threads>::new(cell, team, stage, asked, Costs::default())?))
     } else {
-        let machine = simulated(cell)?;
+        let machine = simulated(cell, cache)?;
         let costs = Costs::measured_on(machine.model());
         Ok(Box::new(CullSubject::<_, Simulated>::new(cell, machine, stage, asked, costs)?))
     }
@@ -120,7 +120,7 @@ impl<H: Borrow<M>, M: Machine> Subject for CullSubject<H, M> {
         let machine = self.machine.borrow();
         let mut samples = Vec::new();
         let mut traversal = TraversalShare::default();
-        let (mut visited, mut visible, mut imbalance) = (0, 0, 0.0);
+        let (mut visited, mut visible, mut imbalance, mut used) = (0, 0, 0.0, 0);
         for (number, camera) in self.stage.cameras.iter().enumerate() {
             let frustum = Frustum::new(camera);
             let frame = Frame::new(&self.tree, number, &frustum, self.asked.tests).map_err(failed)?;
@@ -149,6 +149,7 @@ impl<H: Borrow<M>, M: Machine> Subject for CullSubject<H, M> {
                 )));
             }
             visible += found.len();
+            used += shares.len();
             visited += shares.iter().map(|share| share.visited).sum::<u64>();
             imbalance += load_imbalance(shares.iter().map(|share| share.visited));
         }
@@ -156,6 +157,7 @@ impl<H: Borrow<M>, M: Machine> Subject for CullSubject<H, M> {
         samples.push(Sample::of_path("nodes_visited", visited as f64 / frames));
         samples.push(Sample::of_path("nodes_visible", visible as f64 / frames));
         samples.push(Sample::of_path("load_imbalance", imbalance / frames));
+        samples.push(Sample::of_path("processors_used", used as f64 / frames));
         samples.extend(traversal.sample());
         Ok(samples)
     }

@@ -61,6 +61,8 @@ pub struct Known {
     pub machines: Vec<String>,
     /// Whether a scheme can run on a machine with so many processors; a plan leaves out what cannot.
     pub fits: fn(scheme: &str, machine: &str, processors: u32) -> bool,
+    /// Whether a scheme learns from run to run, so that its first path tells of something else than later ones.
+    pub learns: fn(scheme: &str) -> bool,
 }
 
 /// The jobs, by word: how each is made ready. The list is the table of contents.
@@ -78,6 +80,7 @@ impl Known {
                 let native_only = SCHEMES.iter().any(|known| known.name == scheme && known.native_only);
                 machine == THREADS || !native_only
             },
+            learns: |scheme| SCHEMES.iter().any(|known| known.name == scheme && known.learns),
         }
     }
 }
@@ -87,6 +90,7 @@ impl Known {
 pub struct SubjectCache {
     scenes: HashMap<String, Rc<Stage>>,
     teams: HashMap<u32, Rc<Threads>>,
+    models: HashMap<String, Model>,
 }
 
 /// A scene ready to be gone through: its tree and a camera for each frame.
@@ -100,6 +104,11 @@ const NEAR_SHARE: f32 = 1e-4;
 const FAR_SHARE: f32 = 2.0;
 
 impl SubjectCache {
+    /// Lets a name stand for this simulated machine, whatever preset is called so.
+    pub(super) fn provide(&mut self, name: &str, model: Model) {
+        self.models.insert(name.to_owned(), model);
+    }
+
     fn stage(&mut self, name: &str, options: &Options) -> Result<Rc<Stage>, MeasureError> {
         let key = format!("{name} {options:?}");
         if let Some(stage) = self.scenes.get(&key) {
@@ -154,11 +163,14 @@ pub(super) fn scene(name: &str) -> Result<scene::Scene, MeasureError> {
 }
 
 /// The simulated machine a cell names, with the cell's settings.
-fn simulated(cell: &Cell) -> Result<Simulated, MeasureError> {
-    let mut model = Model::named(&cell.machine).map_err(|error| match error {
-        ModelError::Unknown { .. } => MeasureError::Words(error.to_string()),
-        error => failed(error),
-    })?;
+fn simulated(cell: &Cell, cache: &SubjectCache) -> Result<Simulated, MeasureError> {
+    let mut model = match cache.models.get(&cell.machine) {
+        Some(model) => model.clone(),
+        None => Model::named(&cell.machine).map_err(|error| match error {
+            ModelError::Unknown { .. } => MeasureError::Words(error.to_string()),
+            error => failed(error),
+        })?,
+    };
     let prefix = format!("{}.", cell.machine);
     for (key, value) in &cell.settings {
         let Some(constant) = key.strip_prefix("machine.").or_else(|| key.strip_prefix(&prefix)) else {

@@ -44,7 +44,7 @@ pub(super) fn open(
         let team = cache.team(cell.processors)?;
         Ok(Box::new(TreeSubject::<_, Threads>::new(cell, team, &asked, options)?))
     } else {
-        let machine = simulated(cell)?;
+        let machine = simulated(cell, cache)?;
         Ok(Box::new(TreeSubject::<_, Simulated>::new(cell, machine, &asked, options)?))
     }
 }
@@ -73,7 +73,7 @@ impl<H: Borrow<M>, M: Machine> Subject for TreeSubject<H, M> {
         let machine = self.machine.borrow();
         let mut samples = Vec::new();
         let mut traversal = TraversalShare::default();
-        let (mut visited, mut imbalance) = (0, 0.0);
+        let (mut visited, mut imbalance, mut used) = (0, 0.0, 0);
         for run in 0..self.runs {
             if !self.pause.is_zero() {
                 std::thread::sleep(self.pause);
@@ -93,10 +93,13 @@ impl<H: Borrow<M>, M: Machine> Subject for TreeSubject<H, M> {
                 )));
             }
             visited += nodes;
+            used += shares.len();
             imbalance += load_imbalance(shares.iter().map(|share| share.visited));
         }
-        samples.push(Sample::of_path("nodes_visited", visited as f64 / self.runs.max(1) as f64));
-        samples.push(Sample::of_path("load_imbalance", imbalance / self.runs.max(1) as f64));
+        let runs = self.runs.max(1) as f64;
+        samples.push(Sample::of_path("nodes_visited", visited as f64 / runs));
+        samples.push(Sample::of_path("load_imbalance", imbalance / runs));
+        samples.push(Sample::of_path("processors_used", used as f64 / runs));
         samples.extend(traversal.sample());
         Ok(samples)
     }

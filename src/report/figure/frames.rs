@@ -8,22 +8,18 @@ use crate::report::group::{Curve, Group, groups, split};
 use std::collections::HashMap;
 
 /// What the rows of a cell tell where those of its frames were not kept: metric, and its name on the axis.
-const KEPT: [(&str, &str); 4] = [
-    ("frame_time_p50", "50 %"),
-    ("frame_time_p90", "90 %"),
-    ("frame_time_p99", "99 %"),
-    ("frame_time_max", "all"),
-];
+const KEPT: [(&str, &str); 4] =
+    [("frame_time_p50", "50"), ("frame_time_p90", "90"), ("frame_time_p99", "99"), ("frame_time_max", "max")];
 /// What is drawn of the rows of frames: the share of frames, and its name on the axis.
 const SHARES: [(f64, &str); 8] = [
-    (0.0, "one"),
-    (0.1, "10 %"),
-    (0.25, "25 %"),
-    (0.5, "50 %"),
-    (0.75, "75 %"),
-    (0.9, "90 %"),
-    (0.99, "99 %"),
-    (1.0, "all"),
+    (0.0, "min"),
+    (0.1, "10"),
+    (0.25, "25"),
+    (0.5, "50"),
+    (0.75, "75"),
+    (0.9, "90"),
+    (0.99, "99"),
+    (1.0, "max"),
 ];
 
 pub(crate) fn figures(material: &Material<'_>) -> Vec<Figure> {
@@ -152,10 +148,10 @@ fn panel(
         series.push(Series { style: Style::Curve, entry: legend.entry(&best), points });
     }
     let most = group.parallel_counts().max().unwrap_or(1);
-    let axis =
-        |name: &str, scale, high| Axis { name: name.into(), unit: String::new(), scale, low: -0.4, high };
-    let x = axis("share of the frames", Scale::Names(names.clone()), names.len() as f64 - 0.6);
-    let y = axis("frame time", Scale::Even, 1.0);
+    let high = names.len() as f64 - 0.6;
+    let (name, scale) = ("share of the frames".into(), Scale::Names(names));
+    let x = Axis { name, unit: "%".into(), scale, low: -0.4, high };
+    let y = Axis { name: "frame time".into(), unit: String::new(), scale: Scale::Even, low: 0.0, high: 1.0 };
     let pairs: Vec<_> = material.groups.iter().map(pair).collect();
     (!series.is_empty()).then(|| Panel {
         heading: format!("{}, P = {most}", heading(group, &material.groups)),
@@ -177,7 +173,7 @@ fn says(panels: &[Panel], legend: &[Entry], unit: &str) -> String {
                 return None;
             };
             let at = |name: &str| names.iter().position(|other| other == name).and_then(|at| points.get(at));
-            let (middle, slow) = (at("50 %")?, at("99 %")?);
+            let (middle, slow) = (at("50")?, at("99")?);
             let ratio = slow.y / middle.y;
             ratio.is_finite().then_some((panel, entry, middle.y, slow.y, ratio))
         })

@@ -11,6 +11,7 @@ use std::sync::atomic::Ordering;
 
 pub(super) const SUMMARY: &str = "crate crossbeam-deque, idle workers spin (rival; threads only)";
 pub(super) const NATIVE_ONLY: bool = true;
+pub(super) const LEARNS: bool = false;
 
 pub(super) struct CrossbeamDeque<M: Machine> {
     workers: Seats<Worker<u64>>,

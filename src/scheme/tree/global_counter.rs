@@ -16,6 +16,7 @@ use crate::scheme::{SettingError, Settings};
 
 pub(super) const SUMMARY: &str = "a locked queue each, dealt to by a shared counter (Paper II sec. 3.2)";
 pub(super) const NATIVE_ONLY: bool = false;
+pub(super) const LEARNS: bool = false;
 
 pub(super) struct GlobalCounter<M: Machine> {
     queues: CounterQueues<M>,

@@ -19,6 +19,7 @@ use std::sync::atomic::Ordering;
 
 pub(super) const SUMMARY: &str = "one locked queue for all (Paper II sec. 3.1)";
 pub(super) const NATIVE_ONLY: bool = false;
+pub(super) const LEARNS: bool = false;
 
 pub(super) struct GlobalQueue<M: Machine> {
     queue: LockedQueue<M>,

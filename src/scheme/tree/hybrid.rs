@@ -19,6 +19,7 @@ use std::sync::atomic::Ordering;
 pub(super) const SUMMARY: &str =
     "global counter for the first 6 P tasks, then each alone (Paper II sec. 3.3)";
 pub(super) const NATIVE_ONLY: bool = false;
+pub(super) const LEARNS: bool = false;
 
 pub(super) struct Hybrid<M: Machine> {
     queues: CounterQueues<M>,

@@ -30,6 +30,7 @@ use std::sync::atomic::Ordering;
 
 pub(super) const SUMMARY: &str = "rings between neighbours, sent blindly round robin (Paper II sec. 4)";
 pub(super) const NATIVE_ONLY: bool = false;
+pub(super) const LEARNS: bool = false;
 
 pub(super) struct LockFree<M: Machine> {
     seats: Seats<Seat<M>>,
@@ -60,7 +61,7 @@ fn receivers(p: usize, processors: usize, n: usize) -> impl Iterator<Item = usiz
 
 impl<M: Machine> LockFree<M> {
     pub(super) fn new(machine: &M, processors: usize, settings: &Settings) -> Result<Self, SettingError> {
-        let n = settings.number("receivers", 4, 1..=4096)?;
+        let n = settings.number("receivers", 8, 1..=4096)?;
         let modes = [("off", false), ("half_difference", true)];
         let balance = settings.choice("balance", false, &modes)?;
         let grain = settings.number("grain", 32, 1..=1 << 30)?;

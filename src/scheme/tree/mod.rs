@@ -22,6 +22,7 @@
 //! ```
 
 mod auto;
+mod choice;
 mod counter_queues;
 mod crossbeam_deque;
 mod global_counter;
@@ -31,12 +32,14 @@ mod lock_free;
 mod neighbours;
 mod rayon_join;
 mod receiver_initiated;
+
 mod serial;
 mod work;
 mod work_stealing;
 
 use super::{SettingError, Settings};
 use crate::machine::{Machine, RunError};
+pub use choice::levels as processor_levels;
 use std::collections::BTreeMap;
 use work::Billed;
 pub use work::{Share, Task, TreeWork, work};
@@ -50,17 +53,24 @@ pub struct About {
     pub summary: &'static str,
     /// Whether it is another library's, which runs on real threads only.
     pub native_only: bool,
+    /// Whether it learns from run to run, so that its first runs do not tell how fast it is.
+    pub learns: bool,
 }
 
 /// Declares the schemes: the list is the table of contents. Each file holds a type of one name, with
-/// `SUMMARY`, `NATIVE_ONLY`, `new` and `run`; the file's name is the scheme's word everywhere.
+/// `SUMMARY`, `NATIVE_ONLY`, `LEARNS`, `new` and `run`; the file's name is the scheme's word everywhere.
 macro_rules! tree_schemes {
     ($($file:ident => $Scheme:ident),* $(,)?) => {
         enum AnyScheme<M: Machine> { $($Scheme($file::$Scheme<M>)),* }
 
         /// The schemes, by name.
         pub const SCHEMES: &[About] =
-            &[$(About { name: stringify!($file), summary: $file::SUMMARY, native_only: $file::NATIVE_ONLY }),*];
+            &[$(About {
+                name: stringify!($file),
+                summary: $file::SUMMARY,
+                native_only: $file::NATIVE_ONLY,
+                learns: $file::LEARNS,
+            }),*];
 
         impl<M: Machine> AnyScheme<M> {
             fn new(name: &str, machine: &M, processors: usize, settings: &Settings) -> Result<Self, SettingError> {
@@ -98,7 +108,7 @@ tree_schemes! {
 /// A scheme set up for a machine and a number of processors. It keeps its queues from run to run.
 pub struct Scheme<M: Machine> {
     scheme: AnyScheme<M>,
-    name: &'static str,
+    about: &'static About,
     processors: usize,
     settings: Settings,
     /// Whether the last run failed, so that tasks may be left in queues.
@@ -119,8 +129,8 @@ impl<M: Machine> Scheme<M> {
         let settings = Settings::new(name, settings);
         let scheme = AnyScheme::new(name, machine, processors.max(1), &settings)?;
         settings.finish()?;
-        let name = SCHEMES.iter().find(|known| known.name == name).expect("it was just made").name;
-        Ok(Scheme { scheme, name, processors, settings, spoilt: false })
+        let about = SCHEMES.iter().find(|known| known.name == name).expect("it was just made");
+        Ok(Scheme { scheme, about, processors, settings, spoilt: false })
     }
 
     /// Shares out `work` over the processors; returns what each of them found and how many tasks it
@@ -131,7 +141,7 @@ impl<M: Machine> Scheme<M> {
     pub fn run<W: TreeWork>(&mut self, machine: &M, work: &W) -> Result<Vec<Share<W::Found>>, RunError> {
         machine.check_processors(self.processors)?;
         if self.spoilt {
-            self.scheme = AnyScheme::new(self.name, machine, self.processors, &self.settings)
+            self.scheme = AnyScheme::new(self.about.name, machine, self.processors, &self.settings)
                 .expect("these settings have been used before");
         }
         self.spoilt = true;
@@ -140,9 +150,9 @@ impl<M: Machine> Scheme<M> {
         Ok(shares)
     }
 
-    /// The scheme's name.
-    pub fn name(&self) -> &'static str {
-        self.name
+    /// The scheme's line in the list of schemes.
+    pub fn about(&self) -> &'static About {
+        self.about
     }
 }
 

@@ -13,6 +13,7 @@ use std::sync::Mutex;
 
 pub(super) const SUMMARY: &str = "crate rayon, join at every node (rival; threads only)";
 pub(super) const NATIVE_ONLY: bool = true;
+pub(super) const LEARNS: bool = false;
 
 pub(super) struct RayonJoin<M> {
     /// Made on the first run, so that a system that refuses threads is an error of the run.

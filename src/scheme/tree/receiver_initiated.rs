@@ -24,6 +24,7 @@ use std::sync::atomic::Ordering;
 pub(super) const SUMMARY: &str =
     "the idle ask, the busy hand over half (Paper II sec. 4.1, receiver-induced)";
 pub(super) const NATIVE_ONLY: bool = false;
+pub(super) const LEARNS: bool = false;
 
 /// An answer: nothing to give. Other answers are numbers of tasks; 0 means none yet.
 const REFUSED: u64 = u64::MAX;

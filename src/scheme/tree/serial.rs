@@ -10,6 +10,7 @@ use std::marker::PhantomData;
 
 pub(super) const SUMMARY: &str = "one processor, no sharing";
 pub(super) const NATIVE_ONLY: bool = false;
+pub(super) const LEARNS: bool = false;
 
 pub(super) struct Serial<M> {
     stack: Vec<u64>,

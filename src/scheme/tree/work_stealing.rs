@@ -20,6 +20,7 @@ use std::sync::atomic::Ordering;
 
 pub(super) const SUMMARY: &str = "Chase-Lev deques, the idle steal (rival; Cilk-5 in Paper II sec. 6)";
 pub(super) const NATIVE_ONLY: bool = false;
+pub(super) const LEARNS: bool = false;
 
 pub(super) struct WorkStealing<M: Machine> {
     deques: Vec<Deque<M>>,

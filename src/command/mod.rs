@@ -1,6 +1,7 @@
 //! The command line: thin. Words in, exit code out: 0 done, 1 the run failed, 2 the words were off.
 
 mod advise;
+mod compare;
 mod list;
 mod print;
 mod progress;
@@ -8,9 +9,10 @@ mod report;
 mod run;
 mod stress;
 mod table;
+mod trace;
 mod words;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use apportion::measure::{MeasureError, inspect};
 use clap::{CommandFactory, Parser};
 use std::io::IsTerminal;
@@ -26,7 +28,7 @@ pub(crate) fn main() -> ExitCode {
         Ok(code) => code,
         Err(error) if print::is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("apportion: {}", told(&error));
+            print::note(&told(&error));
             let usage = error.downcast_ref::<MeasureError>().is_some_and(MeasureError::is_usage);
             ExitCode::from(if usage { 2 } else { 1 })
         }
@@ -54,6 +56,7 @@ fn act(action: Action) -> Result<ExitCode> {
         Action::Table(words) => table::table(&words)?,
         Action::Report(words) => report::report(&words)?,
         Action::Advise(words) => advise::advise(&words)?,
+        Action::Compare(words) => compare::compare(&words)?,
         Action::Scene { scene } => print::line(&inspect::scene(&scene)?)?,
         Action::Machine { machine } => {
             print::line(&inspect::machine(machine.as_deref(), &mut tell)?)?;
@@ -63,10 +66,15 @@ fn act(action: Action) -> Result<ExitCode> {
         }
         Action::Completions { shell } => {
             let mut text = Vec::new();
-            clap_complete::generate(shell, &mut Words::command(), "apportion", &mut text);
+            clap_complete::generate(shell, &mut words::with_names()?, "apportion", &mut text);
             print::bytes(&text)?;
         }
-        Action::Man => {
+        Action::Man { out: Some(folder) } => {
+            std::fs::create_dir_all(&folder)
+                .and_then(|()| clap_mangen::generate_to(Words::command(), &folder))
+                .with_context(|| format!("cannot write to {}", folder.display()))?;
+        }
+        Action::Man { out: None } => {
             let mut text = Vec::new();
             clap_mangen::Man::new(Words::command()).render(&mut text)?;
             print::bytes(&text)?;

@@ -4,11 +4,12 @@ use super::list::EXPERIMENTS;
 use super::progress::Bar;
 use super::report::write_charts;
 use super::table::RESULTS;
+use super::trace::TraceFile;
 use super::words::{Format, RunWords};
 use super::{INTERRUPTED, print};
 use anyhow::{Context, Result};
 use apportion::measure::{
-    self, Ending, Experiment, Known, MeasureError, Plan, Selection, Shelf, SubjectCache, subject,
+    self, Ending, Experiment, Known, MeasureError, Plan, Selection, Shelf, SubjectCache, Tracer, subject,
 };
 use apportion::record::{Host, Meta, RowLog, RunFolder, export_csv, run_id, utc_now, write_whole};
 use apportion::report::{self, Run, Table};
@@ -21,19 +22,29 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Runs the experiments named, one after the other.
 pub(crate) fn run(words: &RunWords) -> Result<ExitCode> {
     let (shelf, known) = (Shelf::open(Path::new(EXPERIMENTS))?, Known::here());
+    if let Some(twice) = words.names.iter().enumerate().find(|(at, name)| words.names[..*at].contains(name)) {
+        return Err(MeasureError::Words(format!("experiment {} is named twice", twice.1)).into());
+    }
     // All words are checked before the first experiment takes its minutes.
     let prepared = words.names.iter().map(|name| Prepared::new(words, name, &shelf, &known));
     let prepared: Vec<Prepared> = prepared.collect::<Result<_>>()?;
+    let mut trace = words.trace.as_deref().map(TraceFile::new).transpose()?;
     let stop = stop_on_interrupt()?;
     let mut together = Table::default();
     for mut one in prepared {
         let folder = one.folder()?;
-        if let Ending::Stopped { left } = one.go(&folder, &stop)? {
+        let tracer = trace.is_some().then(Tracer::default);
+        let ending = one.go(&folder, &stop, tracer.as_ref());
+        let traced = trace.as_mut().zip(tracer).map(|(trace, tracer)| trace.add(&tracer, &folder));
+        // What the run says comes first; its cells are traced in any case.
+        let ending = ending?;
+        let traced = traced.transpose()?.unwrap_or_default();
+        if let Ending::Stopped { left } = ending {
             let place = folder.path().display();
-            eprintln!("apportion: stopped with {left} cells missing in {place}; take it up with --resume");
+            print::note(&format!("stopped with {left} cells missing in {place}; take it up with --resume"));
             return Ok(ExitCode::from(INTERRUPTED));
         }
-        let table = one.finish(&folder, words.format)?;
+        let table = one.finish(&folder, words.format, traced)?;
         together.lines.extend(table.lines);
     }
     if words.format != Format::Table {
@@ -95,7 +106,12 @@ impl Prepared {
         let plan = Plan::new(&experiment, &selection, known, Host::here().cores)?;
         let mut cache = SubjectCache::default();
         if resumed.is_none() {
-            open_each_kind(&plan, &mut cache)?;
+            open_each_kind(&plan, &mut cache).map_err(|error| match error {
+                MeasureError::Setting(message) => {
+                    MeasureError::Words(format!("{}: {message}", shelf.file(name)))
+                }
+                error => error,
+            })?;
         }
         Ok(Self { experiment, text, selection, plan, cache, out, resumed })
     }
@@ -127,7 +143,7 @@ impl Prepared {
         Ok(folder)
     }
 
-    fn go(&mut self, folder: &RunFolder, stop: &AtomicBool) -> Result<Ending> {
+    fn go(&mut self, folder: &RunFolder, stop: &AtomicBool, tracer: Option<&Tracer>) -> Result<Ending> {
         let mut meta = Meta::read(&folder.meta())?;
         let (mut log, kept) = RowLog::open(&folder.rows())?;
         let bar = Bar::new(&self.experiment.name);
@@ -135,7 +151,10 @@ impl Prepared {
             &self.plan,
             &meta.run,
             (&mut log, &kept),
-            &mut |cell, options| subject::open(cell, options, &mut self.cache),
+            &mut |cell, options| match tracer {
+                Some(tracer) => tracer.open(cell, options, &mut self.cache),
+                None => subject::open(cell, options, &mut self.cache),
+            },
             &mut |progress| bar.show(progress),
             stop,
         );
@@ -150,14 +169,23 @@ impl Prepared {
         Ok(ending)
     }
 
-    /// Draws the charts and makes the table; prints it, and what was written where, unless it is for a program.
-    fn finish(&self, folder: &RunFolder, format: Format) -> Result<Table> {
+    /// Draws the charts and makes the table; prints it, and what was written where (also the traces before), unless
+    /// it is for a program.
+    fn finish(&self, folder: &RunFolder, format: Format, traced: Vec<PathBuf>) -> Result<Table> {
         let run = Run::read(folder)?;
-        let table = report::table(&run.rows, &self.experiment.paper);
+        let mut table = report::table(&run.rows, &self.experiment.paper);
+        table.hold_peaks_to(|machine| Plan::whole_counts(&self.experiment, machine, Host::here().cores));
         let mut written = vec![folder.rows(), folder.csv(), folder.meta()];
         written.extend(write_charts(&run, folder)?);
+        let loose = self.selection.until.map(|percent| (percent, report::loose(&run.rows, percent)));
+        written.extend(traced);
         if format == Format::Table {
             print::line(&format!("{}\n\n{}", self.experiment.title, table.text()))?;
+        }
+        if let Some((percent, loose)) = loose {
+            tell_loose(percent, &loose);
+        }
+        if format == Format::Table {
             for path in written {
                 print::line(&format!("wrote {}", path.display()))?;
             }
@@ -166,12 +194,20 @@ impl Prepared {
     }
 }
 
-/// Opens one cell for each scene and scheme: a scene that cannot be read or a setting that is off must not leave a
+/// Says on standard error which speedups `--until` gave up on.
+fn tell_loose(percent: f64, loose: &[String]) {
+    if !loose.is_empty() {
+        print::note(&format!("time was up before these speedups were sure to {percent} %:"));
+        loose.iter().for_each(|cell| eprintln!("  {cell}"));
+    }
+}
+
+/// Opens one cell for each scene, machine, scheme and choice of settings: a scene that cannot be read or a setting that is off must not leave a
 /// folder behind that `--resume` would take up.
-fn open_each_kind(plan: &Plan, cache: &mut SubjectCache) -> Result<()> {
+fn open_each_kind(plan: &Plan, cache: &mut SubjectCache) -> Result<(), MeasureError> {
     let mut seen = HashSet::new();
     for cell in &plan.cells {
-        if seen.insert((&cell.scene, &cell.scheme)) {
+        if seen.insert((&cell.scene, &cell.machine, &cell.scheme, cell.settings_text())) {
             subject::open(cell, &plan.options, cache)?;
         }
     }

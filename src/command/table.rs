@@ -4,8 +4,8 @@ use super::list::EXPERIMENTS;
 use super::print;
 use super::words::{Format, TableWords};
 use anyhow::Result;
-use apportion::measure::{Known, Shelf};
-use apportion::record::{RunFolder, read_rows};
+use apportion::measure::{Known, Plan, Shelf};
+use apportion::record::{Meta, RunFolder, read_rows};
 use apportion::report;
 use std::path::Path;
 
@@ -16,7 +16,9 @@ pub(crate) const RESULTS: &str = "results";
 pub(crate) fn table(words: &TableWords) -> Result<()> {
     let experiment = Shelf::open(Path::new(EXPERIMENTS))?.load(&words.name, &Known::here())?;
     let folder = RunFolder::newest_finished(Path::new(RESULTS), &words.name)?;
-    let table = report::table(&read_rows(&folder.rows())?, &experiment.paper);
+    let mut table = report::table(&read_rows(&folder.rows())?, &experiment.paper);
+    let cores = Meta::read(&folder.meta())?.host.cores;
+    table.hold_peaks_to(|machine| Plan::whole_counts(&experiment, machine, cores));
     print::table(&table, words.format)?;
     if words.format == Format::Table {
         print::line(&format!("from {}", folder.path().display()))?;

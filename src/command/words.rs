@@ -1,8 +1,11 @@
 //! The words of the command line.
 
-use apportion::measure::Selection;
-use clap::{Args, Parser, Subcommand, ValueEnum};
-use std::path::PathBuf;
+use super::list::EXPERIMENTS;
+use apportion::measure::{Known, MeasureError, Selection, Shelf};
+use apportion::record::METRICS;
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Command, CommandFactory, Parser, Subcommand, ValueEnum};
+use std::path::{Path, PathBuf};
 
 /// Share graphics work out over processors, real and simulated, and show what that buys.
 #[derive(Debug, Parser)]
@@ -17,10 +20,15 @@ pub(crate) struct Words {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Action {
     /// List the experiments, one a line, with the figure each reproduces.
+    #[command(after_help = "Examples:\n  apportion list\n  apportion list | grep 'Fig. 1'")]
     List,
     /// Run experiments: write rows and charts, print paper, simulated and measured side by side.
+    #[command(after_help = RUN_EXAMPLES)]
     Run(RunWords),
     /// Show the newest finished run of an experiment: paper, simulated and measured, with the error of each.
+    #[command(
+        after_help = "Examples:\n  apportion table cull-large\n  apportion table cull-large --format csv > cull-large.csv"
+    )]
     Table(TableWords),
     /// Draw runs as one HTML page that needs nothing else: charts, tables, where the rows are from.
     ///
@@ -28,14 +36,24 @@ pub(crate) enum Action {
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportWords),
     /// Tell which scheme to take, on how many processors, for a scene of yours, and why.
+    #[command(
+        after_help = "Examples:\n  apportion advise --scene assembly.glb\n  apportion advise --scene factory-large --machine e4000 --processors 8 --explain"
+    )]
     Advise(AdviseWords),
+    /// Hold two runs against each other: for each cell a ratio, its interval and a verdict.
+    #[command(after_help = COMPARE_EXAMPLES)]
+    Compare(CompareWords),
     /// Tell what a scene holds.
+    #[command(after_help = "Examples:\n  apportion scene assembly.glb\n  apportion scene factory-large")]
     Scene {
         /// A file (glTF, GLB, OBJ) or the name of a generated scene.
         #[arg(value_name = "FILE|NAME")]
         scene: String,
     },
     /// Show the constants of the machines, or fit `host` to this computer.
+    #[command(
+        after_help = "Examples:\n  apportion machine\n  apportion machine e4000 > mine.toml\n  apportion machine calibrate > host.toml"
+    )]
     Machine {
         /// The machine; `calibrate` to fit `host`; `predict` to fit it and hold the speedups it foretells
         /// against measured ones (some minutes); all where absent.
@@ -43,6 +61,9 @@ pub(crate) enum Action {
         machine: Option<String>,
     },
     /// Hold invariants under load on real threads.
+    #[command(
+        after_help = "Examples:\n  apportion stress lock_free --processors 8 --seconds 60\n  apportion stress in_queue --processors 2 --seconds 10"
+    )]
     Stress {
         /// The scheme or primitive.
         what: String,
@@ -54,13 +75,39 @@ pub(crate) enum Action {
         seconds: u64,
     },
     /// Print completions for a shell.
+    #[command(
+        after_help = "Examples:\n  apportion completions bash > ~/.local/share/bash-completion/completions/apportion\n  apportion completions zsh > ~/.zfunc/_apportion\n  apportion completions fish > ~/.config/fish/completions/apportion.fish"
+    )]
     Completions {
         /// The shell.
         shell: clap_complete::Shell,
     },
-    /// Print the manual page.
-    Man,
+    /// Print the manual page, or write it and one for each subcommand.
+    #[command(
+        after_help = "Examples:\n  apportion man --out ~/.local/share/man/man1\n  apportion man | man -l -"
+    )]
+    Man {
+        /// Write a page for each subcommand to this folder.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
 }
+
+const RUN_EXAMPLES: &str = "Examples:
+  apportion run cull-large
+  apportion run cull-scene --scene assembly.glb --processors 1-cores
+  apportion run tree-work --machine threads --scheme lock_free,work_stealing --until 2 --at-most 120
+  apportion run cull-large --resume";
+
+const COMPARE_EXAMPLES: &str = "Examples:
+  apportion run tree-work --machine threads --out before
+  apportion run tree-work --machine threads --out after
+  apportion compare before after
+  apportion compare results/cull-large/reference cull-large --metric speedup
+
+Each run is cut into blocks of repeats, each block summed up by the lower quartile of its frames' times, and the \
+ratio is the median of all ratios between blocks. All intervals hold at once with 95 %; a verdict needs the whole \
+interval beyond 1 by 2 %, for two runs of one program differ by as much. Simulated cells are exact.";
 
 /// What `report --help` ends with.
 const REPORT_EXAMPLES: &str = "\
@@ -124,6 +171,23 @@ pub(crate) struct TableWords {
     pub(crate) format: Format,
 }
 
+/// The words of `compare`.
+#[derive(Debug, Args)]
+pub(crate) struct CompareWords {
+    /// The run before: its folder, or an experiment for its newest finished run.
+    #[arg(value_name = "RUN_A")]
+    pub(crate) a: String,
+    /// The run after.
+    #[arg(value_name = "RUN_B")]
+    pub(crate) b: String,
+    /// What to compare by; `frame_time` compares the quieter frames, `frame_time_p90` the slow ones.
+    #[arg(long, value_name = "METRIC", default_value = "frame_time")]
+    pub(crate) metric: String,
+    /// How to print the comparison.
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    pub(crate) format: Format,
+}
+
 /// The words of `run`.
 #[derive(Debug, Args)]
 pub(crate) struct RunWords {
@@ -154,6 +218,14 @@ pub(crate) struct RunWords {
     /// Interleaved repeats on real threads.
     #[arg(long, value_name = "N")]
     repeats: Option<u32>,
+    /// Go on repeating what runs on threads until the 95 % interval of every speedup lies within so many per
+    /// cent of its median, either way; at least 6 repeats.
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    pub(crate) until: Option<f64>,
+    /// Time limit of --until, seconds [default: 300]. The experiment's own repeats are made in any case; a
+    /// resumed run has this time anew.
+    #[arg(long, value_name = "SECONDS", requires = "until", value_parser = clap::value_parser!(u64).range(1..))]
+    at_most: Option<u64>,
     /// Fewer frames and repeats: to see that it runs, not how fast.
     #[arg(long)]
     quick: bool,
@@ -163,6 +235,11 @@ pub(crate) struct RunWords {
     /// Folder for the run; with several experiments, a folder in it for each [default: results/NAME/TIME].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Write what each processor did to FILE, for Perfetto or chrome://tracing (Trace Event format), and into
+    /// the run's folder as timeline.json: one frame a cell, that of median time. Rows are taken without a
+    /// trace, so each cell goes through its path once more. With --resume, only cells run now are traced.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) trace: Option<PathBuf>,
     /// How to print the table.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub(crate) format: Format,
@@ -180,7 +257,36 @@ impl RunWords {
             frames: self.frames,
             seed: self.seed,
             repeats: self.repeats,
+            until: self.until,
+            at_most: self.at_most,
             quick: self.quick,
         }
     }
+}
+
+/// The command with the names there are as values, for completions; the program itself answers an unknown name with
+/// the near ones, which a parser of possible values would not do for experiments and machines that are files.
+pub(crate) fn with_names() -> Result<Command, MeasureError> {
+    let shelf = Shelf::open(Path::new(EXPERIMENTS))?;
+    let known = Known::here();
+    let experiments: Vec<String> = shelf.names().map(str::to_owned).collect();
+    let metrics: Vec<String> = METRICS.iter().map(|metric| metric.name.to_owned()).collect();
+    let hint = |command: Command, subcommand: &str, words: &'static str, values: &[String]| {
+        let values = PossibleValuesParser::new(values.iter().cloned());
+        command
+            .mut_subcommand(subcommand, |command| command.mut_arg(words, |words| words.value_parser(values)))
+    };
+    let command = hint(Words::command(), "run", "names", &experiments);
+    let command = hint(command, "run", "machine", &known.machines);
+    let command = hint(command, "run", "scheme", &known.schemes);
+    let command = hint(command, "table", "name", &experiments);
+    let command = hint(command, "machine", "machine", &known.machines);
+    let command = hint(command, "stress", "what", &known.schemes);
+    Ok(hint(command, "compare", "metric", &metrics))
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let percent = text.trim_end_matches('%').trim_end().parse().ok();
+    let within = percent.filter(|percent| *percent > 0.0 && *percent <= 100.0);
+    within.ok_or_else(|| "expected per cent, above 0 and up to 100".to_owned())
 }

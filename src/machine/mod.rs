@@ -18,11 +18,13 @@ mod seats;
 mod shared;
 pub mod simulated;
 pub mod threads;
+mod trace;
 
 pub use seats::{Claim, Seats};
 pub use shared::{Arena, Layout, Shared};
 pub use simulated::Simulated;
 pub use threads::Threads;
+pub use trace::{Activity, Span, Trace};
 
 /// A 64-bit atomic word in memory shared by the processors of one machine.
 pub trait Word: Send + Sync + Sized {
@@ -81,6 +83,9 @@ pub trait Slot<T: Copy + Send>: Send + Sync {
 pub trait Processor {
     /// The word of its machine.
     type Word: Word;
+    /// Whether a task looked into for a timeline is marked within too: what a scheme does with the tasks it
+    /// emits, at once, is then sending and not work. Natively it stays work, as even the branches take time.
+    const MARKS_WITHIN: bool = false;
     /// This processor's number, `0 .. count()`.
     fn id(&self) -> usize;
     /// How many processors take part in this run.
@@ -100,6 +105,28 @@ pub trait Processor {
     /// Waits until `ready` says so. `ready` may change its answer only through a write to one of
     /// `words`: a simulated processor sleeps until one of their lines is written.
     fn wait_until(&self, words: &[&Self::Word], ready: impl FnMut() -> bool);
+    /// Says what this processor does from now on, for a timeline; returns what it did before. It costs a
+    /// branch where no trace is being made, and no virtual time anywhere.
+    #[inline(always)]
+    fn enter(&self, activity: Activity) -> Activity {
+        activity
+    }
+    /// Takes up a task that stands for up to `size` tasks: from now on this processor works. Says whether the
+    /// task is looked into, that is, whether its end is to be marked with [`Processor::enter`]. Never, where
+    /// no trace is being made; a machine on which marks take time lets short tasks pass, and counts the
+    /// time between them as part of them.
+    #[inline(always)]
+    fn take_up(&self, _size: usize) -> bool {
+        false
+    }
+    /// Runs `body` as an activity, and goes back to what was done before.
+    #[inline]
+    fn during<R>(&self, activity: Activity, body: impl FnOnce() -> R) -> R {
+        let before = self.enter(activity);
+        let result = body();
+        self.enter(before);
+        result
+    }
 }
 
 /// Why a run on a machine failed.
@@ -188,6 +215,19 @@ pub trait Machine: Sync {
     /// what is left of their time went into finding and handing over tasks (P2-24).
     fn charged(&self) -> Option<u64> {
         None
+    }
+    /// Starts a record of what each processor does, in place of one that was not taken; says whether this
+    /// machine can make one. No run may be going on.
+    fn start_trace(&self) -> bool {
+        false
+    }
+    /// Ends the record and returns it; none if none was started. No run may be going on.
+    fn take_trace(&self) -> Option<Trace> {
+        None
+    }
+    /// A handle for one of the threads of a rival library, which this machine does not run.
+    fn outside(&self, processor: usize, processors: usize) -> threads::Thread {
+        threads::Thread::outside(processor, processors)
     }
     /// Ticks a nanosecond: 1 natively, the clock rate in GHz on a simulated machine.
     fn ticks_per_nanosecond(&self) -> f64 {

@@ -83,6 +83,8 @@ impl Experiment {
     /// # Errors
     /// Naming file and line: no TOML, an unknown key, a name that is not `known`, a list that cannot be read.
     pub fn parse(name: &str, file: &str, text: &str, known: &Known) -> Result<Self, MeasureError> {
+        // Some editors begin a file with a byte order mark.
+        let text = text.trim_start_matches('\u{feff}');
         let wrong = |at: usize, message: String| MeasureError::Experiment {
             file: file.to_owned(),
             line: text[..at.min(text.len())].matches('\n').count() + 1,

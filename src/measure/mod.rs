@@ -17,6 +17,8 @@ mod shelf;
 pub mod stress;
 pub mod subject;
 mod summary;
+mod trace;
+mod until;
 mod value;
 
 pub use experiment::Experiment;
@@ -26,6 +28,8 @@ pub use processors::processor_list;
 pub use run::{Ending, Open, Progress, run};
 pub use shelf::Shelf;
 pub use subject::{Known, Sample, Subject, SubjectCache};
+pub use trace::{FrameTrace, Tracer};
+pub use until::Until;
 pub use value::Value;
 
 use crate::record::RecordError;
@@ -62,6 +66,9 @@ pub enum MeasureError {
         /// The near ones, as [`near`] says them.
         near: String,
     },
+    /// A setting that is off, wherever it was set.
+    #[error("{0}")]
+    Setting(String),
     /// The words of the command line do not make a run.
     #[error("{0}")]
     Words(String),
@@ -84,6 +91,6 @@ pub enum MeasureError {
 impl MeasureError {
     /// Whether the words of the command line were off, rather than the run having failed.
     pub fn is_usage(&self) -> bool {
-        matches!(self, Self::Unknown { .. } | Self::Words(_))
+        matches!(self, Self::Unknown { .. } | Self::Setting(_) | Self::Words(_))
     }
 }

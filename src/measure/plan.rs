@@ -1,13 +1,15 @@
 //! From an experiment and the words of the command line to the list of cells.
 
 use super::experiment::SHARED;
-use super::{Experiment, Known, MeasureError, Value, near, processor_list};
+use super::until::FEWEST;
+use super::{Experiment, Known, MeasureError, Until, Value, near, processor_list};
 use crate::machine::simulated::Model;
 use crate::record::{CellKey, THREADS};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// With `--quick` no more repeats than this: enough for a median.
 const QUICK_REPEATS: u32 = 3;
@@ -53,8 +55,17 @@ pub struct Selection {
     pub seed: Option<u64>,
     /// Repeats in place of the experiment's.
     pub repeats: Option<u32>,
+    /// Repeats go on until no speedup's interval is wider than this many per cent of its median either way.
+    pub until: Option<f64>,
+    /// The time limit of that, seconds; [`Selection::AT_MOST`] where absent.
+    pub at_most: Option<u64>,
     /// Fewer frames and repeats: to see that it runs, not how fast.
     pub quick: bool,
+}
+
+impl Selection {
+    /// How long `until` goes on where nothing is said, seconds: as long as one waits with a cup of coffee.
+    pub const AT_MOST: u64 = 300;
 }
 
 /// What holds for all cells of a run.
@@ -62,8 +73,12 @@ pub struct Selection {
 pub struct Options {
     /// Frames of the camera path.
     pub frames: u32,
+    /// As many frames of a recorded path as were asked for; none for all it has.
+    pub path_frames: Option<u32>,
     /// Interleaved repeats on real threads.
     pub repeats: u32,
+    /// Whether and how long repeats go on beyond those.
+    pub until: Option<Until>,
     /// The seed of all randomness.
     pub seed: u64,
     /// A recorded camera path.
@@ -111,6 +126,7 @@ impl Plan {
             scenes.iter().flat_map(|scene| machines.iter().map(move |machine| (scene, machine)))
         {
             let counts = counts(experiment, selection, machine, cores)?;
+            let model = named_in_file(machine);
             for settings in combinations(experiment) {
                 for scheme in &schemes {
                     let counts = if is_serial(scheme) { &[1][..] } else { &counts };
@@ -121,7 +137,7 @@ impl Plan {
                             scene: scene.clone(),
                             structure: experiment.structure.clone(),
                             scheme: scheme.clone(),
-                            settings: own_settings(&settings, scheme, machine),
+                            settings: own_settings(&settings, scheme, machine, model.as_deref()),
                             machine: machine.clone(),
                             processors,
                         };
@@ -152,7 +168,13 @@ impl Plan {
         })
     }
 
-    /// How often a cell runs: a simulated machine says the same each time.
+    /// The counts of processors an experiment asks for on a machine, on a computer with so many cores; none for a
+    /// machine it says nothing of.
+    pub fn whole_counts(experiment: &Experiment, machine: &str, cores: u32) -> Vec<u32> {
+        counts(experiment, &Selection::default(), machine, cores).unwrap_or_default()
+    }
+
+    /// How often a cell runs at least: a simulated machine says the same each time.
     pub fn repeats(&self, cell: &Cell) -> u32 {
         if cell.is_simulated() { 1 } else { self.options.repeats }
     }
@@ -213,9 +235,19 @@ fn options(experiment: &Experiment, selection: &Selection) -> Result<Options, Me
     let quick = selection.quick;
     let frames = if quick { experiment.quick_frames } else { experiment.frames };
     let repeats = if quick { experiment.repeats.min(QUICK_REPEATS) } else { experiment.repeats };
+    let until = selection.until.map(|percent| Until {
+        percent,
+        at_most: Duration::from_secs(selection.at_most.unwrap_or(Selection::AT_MOST)),
+    });
+    if until.is_some_and(|until| !(until.percent > 0.0 && until.percent <= 100.0)) {
+        return Err(MeasureError::Words("--until goes from above 0 to 100 per cent".to_owned()));
+    }
+    let repeats = selection.repeats.unwrap_or(repeats);
     let options = Options {
         frames: selection.frames.unwrap_or(frames),
-        repeats: selection.repeats.unwrap_or(repeats),
+        path_frames: selection.frames,
+        repeats: if until.is_some() && repeats > 0 { repeats.max(FEWEST) } else { repeats },
+        until,
         seed: selection.seed.unwrap_or(1),
         path: selection.path.clone(),
     };
@@ -275,7 +307,9 @@ fn counts(
     cores: u32,
 ) -> Result<Vec<u32>, MeasureError> {
     let lists = &experiment.processors;
-    let list = selection.processors.as_ref().or_else(|| lists.get(machine)).or_else(|| lists.get("*"));
+    let list = selection.processors.as_ref().or_else(|| lists.get(machine));
+    let of_model = || named_in_file(machine).and_then(|model| lists.get(&model));
+    let list = list.or_else(of_model).or_else(|| lists.get("*"));
     let list = list.ok_or_else(|| {
         MeasureError::Words(format!(
             "experiment {} lists no processors for {machine}: add --processors",
@@ -299,11 +333,27 @@ fn combinations(experiment: &Experiment) -> Vec<BTreeMap<String, Value>> {
     all
 }
 
-/// The settings without those of other schemes and machines.
-fn own_settings(settings: &BTreeMap<String, Value>, scheme: &str, machine: &str) -> BTreeMap<String, Value> {
+/// The settings without those of other schemes and machines. Those of the machine a file describes (`e4000.memory`
+/// where the file's name is `mine.toml` and its `name` `e4000`) become those of the machine in use.
+fn own_settings(
+    settings: &BTreeMap<String, Value>,
+    scheme: &str,
+    machine: &str,
+    model: Option<&str>,
+) -> BTreeMap<String, Value> {
+    let owner = |key: &str| key.split('.').next().unwrap_or_default().to_owned();
     let own = |key: &str| {
-        let owner = key.split('.').next().unwrap_or_default();
-        SHARED.contains(&owner) || owner == scheme || owner == machine
+        let owner = owner(key);
+        SHARED.contains(&&*owner) || owner == scheme || owner == machine
     };
-    settings.iter().filter(|(key, _)| own(key)).map(|(key, value)| (key.clone(), value.clone())).collect()
+    let pair = |(key, value): (&String, &Value)| (key.clone(), value.clone());
+    let mut all: BTreeMap<String, Value> = settings.iter().filter(|(key, _)| own(key)).map(pair).collect();
+    let of_model = settings.iter().filter(|(key, _)| model == Some(&*owner(key)));
+    all.extend(of_model.map(|(key, value)| (key.replacen(&*owner(key), "machine", 1), value.clone())));
+    all
+}
+
+/// The name that a machine's file gives it; none of a machine that is no file.
+fn named_in_file(machine: &str) -> Option<String> {
+    machine.ends_with(".toml").then(|| Model::named(machine).ok()).flatten().map(|model| model.name)
 }

@@ -2,8 +2,9 @@
 
 use super::noise::lost_time;
 use super::summary::summary;
+use super::until::Tightness;
 use super::{Cell, MeasureError, Options, Plan, Sample, Subject};
-use crate::record::{CellKey, Row, RowLog, metric};
+use crate::record::{CellKey, Row, RowLog, THREADS, metric};
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -38,7 +39,9 @@ pub struct Progress<'a> {
 /// Runs the plan's cells that are not in the log yet; `kept` are the rows that are.
 ///
 /// Repeats are interleaved: all cells once, then all again, so that a slow minute of the computer falls on all of them.
-/// Cells on real threads, and all where one of the schemes learns, are warmed up by one path that is not recorded. `stop` ends the run after the cell in hand.
+/// Cells on real threads, and all where one of the schemes learns, are warmed up by one path that is not recorded.
+/// Beyond the plan's repeats those on threads go on as long as [`Until`](super::Until) wants; its time counts anew
+/// for a run that is taken up. `stop` ends the run after the cell in hand.
 ///
 /// # Errors
 /// A cell cannot be opened or fails, or a row cannot be written; the rows of all cells before it are kept.
@@ -50,25 +53,40 @@ pub fn run(
     watch: &mut dyn FnMut(Progress<'_>),
     stop: &AtomicBool,
 ) -> Result<Ending, MeasureError> {
-    let total = plan.cells.iter().map(|cell| plan.repeats(cell) as usize).sum();
+    let total: usize = plan.cells.iter().map(|cell| plan.repeats(cell) as usize).sum();
     let totals =
         kept.iter().filter(|row| row.metric == "total_time").map(|row| (row.key(), row.value)).collect();
-    let mut runner = Runner { plan, id, log, open, totals, ready: HashMap::new() };
-    let mut done = 0;
-    for repeat in 0..plan.options.repeats {
-        for (index, cell) in plan.cells.iter().enumerate().filter(|(_, cell)| repeat < plan.repeats(cell)) {
+    let mut tightness = Tightness::new(plan.options.until);
+    for row in kept.iter().filter(|row| row.metric == "speedup" && row.machine == THREADS) {
+        tightness.add(&row.key(), row.value);
+    }
+    let rounds = plan.options.repeats;
+    let mut runner = Runner { plan, id, log, open, totals, tightness, rounds, ready: HashMap::new() };
+    let (mut done, mut repeat) = (0, 0);
+    while repeat < rounds || runner.tightness.wants_more() {
+        runner.rounds = rounds.max(repeat + 1);
+        for (index, cell) in plan.cells.iter().enumerate().filter(|(_, cell)| runs_in(cell, repeat)) {
             if !runner.log.is_finished(&cell.key(repeat)) {
+                if repeat >= rounds && runner.tightness.is_late() {
+                    return Ok(Ending::Complete);
+                }
                 // Relaxed: the flag carries no data, and a cell more or less makes no difference.
                 if stop.load(Ordering::Relaxed) {
                     return Ok(Ending::Stopped { left: runner.left() });
                 }
-                watch(Progress { done, total, cell, repeat });
+                watch(Progress { done, total: total.max(done + 1), cell, repeat });
                 runner.cell(index, repeat)?;
             }
             done += 1;
         }
+        repeat += 1;
     }
     Ok(Ending::Complete)
+}
+
+/// Whether a cell runs in a repeat: a simulated machine says the same each time.
+fn runs_in(cell: &Cell, repeat: u32) -> bool {
+    repeat == 0 || !cell.is_simulated()
 }
 
 struct Runner<'a, 'b> {
@@ -78,6 +96,9 @@ struct Runner<'a, 'b> {
     open: &'a mut Open<'b>,
     /// Total time of each finished cell, ns: what speedups are made of.
     totals: HashMap<CellKey, f64>,
+    tightness: Tightness,
+    /// How many repeats there are to be as far as is known.
+    rounds: u32,
     /// Measured cells stay open from repeat to repeat, warm.
     ready: HashMap<usize, Box<dyn Subject>>,
 }
@@ -85,7 +106,9 @@ struct Runner<'a, 'b> {
 impl Runner<'_, '_> {
     fn left(&self) -> usize {
         let cells = self.plan.cells.iter();
-        let all = cells.flat_map(|cell| (0..self.plan.repeats(cell)).map(|repeat| cell.key(repeat)));
+        let all = cells.flat_map(|cell| {
+            (0..self.rounds).filter(|&repeat| runs_in(cell, repeat)).map(|repeat| cell.key(repeat))
+        });
         all.filter(|key| !self.log.is_finished(key)).count()
     }
 
@@ -103,7 +126,13 @@ impl Runner<'_, '_> {
             samples.iter().find(|sample| sample.metric == "total_time").map(|sample| sample.value)
         {
             self.totals.insert(key.clone(), total);
-            samples.extend(self.speedups(cell, repeat, total));
+            let speedups = self.speedups(cell, repeat, total);
+            if let Some(speedup) = speedups.iter().find(|speedup| speedup.metric == "speedup")
+                && !cell.is_simulated()
+            {
+                self.tightness.add(&key, speedup.value);
+            }
+            samples.extend(speedups);
         }
         let complete = Sample { metric: "cell_complete", frame: None, value: samples.len() as f64 };
         for sample in samples.into_iter().chain([complete]) {

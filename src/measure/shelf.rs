@@ -45,6 +45,11 @@ impl Shelf {
         self.texts.keys().map(String::as_str)
     }
 
+    /// What errors call an experiment's file.
+    pub fn file<'a>(&'a self, name: &'a str) -> &'a str {
+        self.texts.get(name).map_or(name, |(file, _)| file)
+    }
+
     /// The experiment's file as text.
     ///
     /// # Errors

@@ -104,7 +104,7 @@ impl RunFolder {
         self.path.join("meta.json")
     }
 
-    /// What each processor did, in the Trace Event format; there for runs that were traced.
+    /// What each processor did in one frame of each cell, if the run was traced.
     pub fn timeline(&self) -> PathBuf {
         self.path.join("timeline.json")
     }

@@ -2,7 +2,7 @@
 //!
 //! A run is a folder: `rows.jsonl` (the log: one record, one write, one line), `rows.csv` (written whole from the
 //! log when the run ends), `meta.json` (what was run, where, when) and `experiment.toml` (the question as it was
-//! put). A row is one number with all that is needed to read it; nothing is told by a file's name or place.
+//! put). A traced run has `timeline.json` too. A row is one number with all that is needed to read it; nothing is told by a file's name or place.
 //!
 //! Invariant: a *cell* (one scheme, with its settings, on one machine with P processors, once) is either in the log
 //! with its last row, `cell_complete`, or it counts as never run: opening the log drops what is left of it.
@@ -17,6 +17,7 @@ mod metric;
 mod question;
 mod row;
 pub mod statistics;
+mod trace_events;
 mod whole;
 
 pub use clock::{run_id, utc_now};
@@ -28,6 +29,7 @@ pub use meta::{Host, Meta};
 pub use metric::{AccuracyKind, Better, METRICS, Metric, metric};
 pub use question::Question;
 pub use row::{CellKey, Row, THREADS, settings_pairs};
+pub use trace_events::{Stretch, TracedFrame, check_trace_place, write_trace};
 pub use whole::write_whole;
 
 use std::path::{Path, PathBuf};
@@ -78,6 +80,12 @@ pub enum RecordError {
     /// A new run was asked for in a folder that holds one.
     #[error("{} holds a run already: name another folder, or take it up with --resume", path.display())]
     Taken {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Another process is writing this run.
+    #[error("{} is being written by another run: wait for it to end", path.display())]
+    InUse {
         /// The folder.
         path: PathBuf,
     },

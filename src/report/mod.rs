@@ -9,6 +9,8 @@
 //!
 //! The same rows give the same bytes.
 
+pub mod comparison;
+mod doubt;
 mod draw;
 mod escape;
 mod figure;
@@ -21,9 +23,12 @@ mod text;
 mod vega;
 mod winners;
 
+pub use comparison::{Comparison, compare};
+pub use doubt::loose;
 pub use page::page;
 pub use run::{Chart, Run};
 pub use table::{Line, Table, table};
+pub use text::wrap;
 
 use crate::record::RecordError;
 use std::path::PathBuf;

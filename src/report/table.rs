@@ -1,10 +1,12 @@
 //! Paper, simulated and measured, side by side.
 
+use super::doubt::doubts;
 use super::group::{Curve, Group, groups};
 use super::text;
 use crate::record::statistics::Interval;
 use crate::record::{Better, PaperFigure, Row, THREADS, metric, quoted, settings_pairs};
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// One number in up to three versions. Its columns are those of `apportion table --format csv`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -21,6 +23,9 @@ pub struct Line {
     pub machine: String,
     /// Processors; none for the peak over all counts.
     pub processors: Option<u32>,
+    /// The counts ours is the peak of, where they are not all of the experiment's: no error is given then.
+    #[serde(skip)]
+    pub peak_of: Option<String>,
     /// The metric.
     pub metric: String,
     /// Its unit.
@@ -44,6 +49,8 @@ pub struct Table {
     pub lines: Vec<Line>,
     /// Speedups by machine and scene, for the text.
     pub(crate) groups: Vec<Group>,
+    /// For each group, what its numbers cannot tell.
+    pub(crate) doubts: Vec<Vec<String>>,
 }
 
 /// Makes the table of a run.
@@ -69,10 +76,24 @@ pub fn table(rows: &[Row], figures: &[PaperFigure]) -> Table {
             }
         }
     }
-    Table { lines, groups: speedups }
+    let doubts = doubts(rows, &speedups);
+    Table { lines, groups: speedups, doubts }
 }
 
 impl Table {
+    /// Takes the error from peaks over fewer counts of processors than the experiment's, which `whole` gives for a
+    /// machine: they are not what the paper printed.
+    pub fn hold_peaks_to(&mut self, whole: impl Fn(&str) -> Vec<u32>) {
+        for line in self.lines.iter_mut().filter(|line| line.figure.is_some() && line.processors.is_none()) {
+            let of_machine = self.groups.iter().filter(|group| group.machine == line.machine);
+            let counts: BTreeSet<u32> = of_machine.flat_map(Group::parallel_counts).collect();
+            if !counts.is_empty() && whole(&line.machine).iter().any(|count| !counts.contains(count)) {
+                line.peak_of = Some(ranges(&counts));
+                (line.error_simulated, line.error_measured) = (None, None);
+            }
+        }
+    }
+
     /// The table for reading.
     pub fn text(&self) -> String {
         text::text(self)
@@ -112,6 +133,21 @@ impl Table {
     }
 }
 
+/// Counts as a list with ranges: `1-4,8`.
+fn ranges(counts: &BTreeSet<u32>) -> String {
+    let mut ranges: Vec<(u32, u32)> = Vec::new();
+    for &count in counts {
+        match ranges.last_mut() {
+            Some((_, last)) if *last + 1 == count => *last = count,
+            _ => ranges.push((count, count)),
+        }
+    }
+    let text = |&(first, last): &(u32, u32)| {
+        if first == last { first.to_string() } else { format!("{first}-{last}") }
+    };
+    ranges.iter().map(text).collect::<Vec<_>>().join(",")
+}
+
 /// Whether `threads` holds the measured numbers of what `simulated` simulates.
 fn is_twin(threads: &Group, simulated: &Group) -> bool {
     threads.machine == THREADS
@@ -139,6 +175,7 @@ fn speedup_line(
         scene: group.scene.clone(),
         machine: group.machine.clone(),
         processors: Some(processors),
+        peak_of: None,
         metric: "speedup".to_owned(),
         unit: "x".to_owned(),
         paper: None,
@@ -164,6 +201,7 @@ fn figure_line(rows: &[Row], figure: &PaperFigure) -> Line {
         scene: cell.map_or_else(|| figure.scene.clone().unwrap_or_default(), |best| best.scene.clone()),
         machine: figure.machine.clone(),
         processors: figure.processors,
+        peak_of: None,
         metric: figure.metric.clone(),
         unit: figure.unit.clone(),
         paper: Some(figure.value),

@@ -1,7 +1,7 @@
 //! Which scheme wins where: one line a choice of common settings, one column a count of processors.
 
 use super::group::Group;
-use super::text::align;
+use super::text::blocks;
 use crate::record::settings_pairs;
 use std::collections::BTreeSet;
 
@@ -24,17 +24,16 @@ pub(crate) fn winners(groups: &[Group]) -> Option<String> {
     }
     let counts: BTreeSet<u32> = groups.iter().flat_map(Group::parallel_counts).collect();
     let counts = spread(&counts.into_iter().collect::<Vec<_>>());
-    let mut cells = vec![vec!["winner, by how much".to_owned()]];
-    cells[0].extend(counts.iter().map(|count| format!("P = {count}")));
-    for group in groups {
-        let mut line = vec![place(group, groups)];
-        line.extend(counts.iter().map(|&count| {
+    let mut columns = vec![vec!["winner, by how much".to_owned()]];
+    columns[0].extend(groups.iter().map(|group| place(group, groups)));
+    for &count in &counts {
+        let winners = groups.iter().map(|group| {
             let win = win(group, count);
             win.map_or("-".to_owned(), |win| format!("{} +{:.0} %", win.scheme, 100.0 * win.margin()))
-        }));
-        cells.push(line);
+        });
+        columns.push(std::iter::once(format!("P = {count}")).chain(winners).collect());
     }
-    Some(align(&cells, 1))
+    Some(blocks(&columns).join("\n"))
 }
 
 /// At most [`COLUMNS`] of the counts, first and last among them.

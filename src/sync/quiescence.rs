@@ -14,7 +14,7 @@
 //! counts were exact, and equal sums say that nothing was on its way. Were step 2 left out, a busy
 //! processor's old counts could balance a task it has passed on since.
 
-use crate::machine::{Layout, Machine, Processor, Shared, Word};
+use crate::machine::{Activity, Layout, Machine, Processor, Shared, Word};
 use std::sync::atomic::Ordering;
 
 /// Bits of a published word that hold the received count; those above hold the sent count.
@@ -61,6 +61,16 @@ impl<M: Machine> Quiescence<M> {
         cpu: &M::Processor,
         sent: u64,
         received: u64,
+        arrivals: &[&M::Word],
+        has_work: impl FnMut() -> bool,
+    ) -> bool {
+        cpu.during(Activity::Idle, || self.wait_dry(cpu, (sent, received), arrivals, has_work))
+    }
+
+    fn wait_dry(
+        &self,
+        cpu: &M::Processor,
+        (sent, received): (u64, u64),
         arrivals: &[&M::Word],
         mut has_work: impl FnMut() -> bool,
     ) -> bool {

@@ -33,8 +33,10 @@ fn lists_the_experiments_from_anywhere() {
     let folder = empty();
     let output = apportion(folder.path(), &["list"]);
     assert!(output.status.success());
-    let line = out(&output).lines().find(|line| line.starts_with("cull-large")).map(str::to_owned);
-    assert!(line.is_some_and(|line| line.contains("Paper II, Fig. 1a")), "{}", out(&output));
+    let list = out(&output);
+    assert!(list.starts_with("Paper II\n  cull-large "), "{list}");
+    assert!(list.contains("Fig. 1a") && list.contains("\nQuestions of our own\n"), "{list}");
+    assert!(list.lines().all(|line| line.chars().count() <= 80), "{list}");
 }
 
 #[test]
@@ -60,6 +62,13 @@ fn words_that_are_off_end_with_two() {
         (&["run", "cull-large", "--frames", "0"], "start at 1"),
         (&["run", "cull-large", "--scene", "factory-larg"], "did you mean factory-large"),
         (&["run", "tree-work", "--scene", "factory-large"], "takes no --scene"),
+        (&["run", "cull-large", "cull-small", "cull-large", "--out", "x"], "cull-large is named twice"),
+        (&["run", "cull-large", "--until", "0"], "above 0 and up to 100"),
+        (&["run", "cull-large", "--until", "five"], "above 0 and up to 100"),
+        (&["run", "cull-large", "--at-most", "9"], "--until"),
+        (&["compare", "cul-large", "x"], "near ones: cull-large"),
+        (&["compare", ".", "."], ". holds no run"),
+        (&["compare", "x", "y", "--metric", "frame_tim"], "near ones: frame_time"),
         (&["run"], "NAME"),
         (&["runn"], "run"),
         (&["stress", "lock_free", "--processors", "0", "--seconds", "1"], "1..=256"),
@@ -93,6 +102,51 @@ fn an_experiment_that_is_no_text_hides_no_other() {
     assert_eq!(said.matches("valid UTF-8").count(), 1, "the cause is told once: {said}");
     refused(folder.path(), &["table", "cull-large"], 1);
     assert!(out(&apportion(folder.path(), &["list"])).contains("cull-large"));
+}
+
+#[test]
+fn a_setting_that_is_off_names_file_and_key() {
+    let folder = empty();
+    let experiments = folder.path().join("experiments");
+    std::fs::create_dir(&experiments).expect("it is made");
+    let small = include_str!("../../experiments/cull-small.toml");
+    for (setting, expected) in [
+        ("\"job.pause_ms\" = \"long\"", "setting `job.pause_ms` is `long`"),
+        ("\"job.pauses\" = 1", "job `cull` has no setting `job.pauses`; near ones: pause_ms"),
+        ("\"lock_free.frobs\" = 1", "scheme `lock_free` has no setting `frobs`"),
+        ("\"e4000.memory\" = 0.5", "setting `e4000.memory`: machine `e4000`"),
+        ("\"machine.memry\" = 5", "no constant `memry`"),
+    ] {
+        let text = small.replace("[settings]\n", &format!("[settings]\n{setting}\n"));
+        // With the byte order mark some editors begin a file with.
+        std::fs::write(experiments.join("odd.toml"), format!("\u{feff}{text}")).expect("it is written");
+        let said = refused(folder.path(), &["run", "odd", "--quick"], 2);
+        assert!(said.contains("odd.toml: ") && said.contains(expected), "{said}");
+    }
+    assert!(!folder.path().join("results").exists(), "nothing is written for words that are off");
+}
+
+#[test]
+fn a_path_has_as_many_frames_as_are_asked_for() {
+    let folder = empty();
+    let path = "eye_x,eye_y,eye_z,look_x,look_y,look_z,up_x,up_y,up_z,fov_y\n0,2,0,9,2,0,0,1,0,60\n1,2,0,9,2,0,0,1,0,60\n";
+    std::fs::write(folder.path().join("walk.csv"), path).expect("it is written");
+    let words = ["run", "cull-small", "--machine", "e4000", "--processors", "2", "--scheme", "hybrid"];
+    let words: Vec<&str> =
+        words.into_iter().chain(["--path", "walk.csv", "--out", "run", "--frames"]).collect();
+    let run = |frames| -> Vec<&str> { words.iter().copied().chain([frames]).collect() };
+    let said = refused(folder.path(), &run("3"), 2);
+    assert!(said.contains("walk.csv: 2 frames, where --frames asks for 3"), "{said}");
+    assert!(apportion(folder.path(), &run("1")).status.success());
+    // Without --frames it is as long as it is; and the two runs can be held against each other.
+    let mut words = words[..words.len() - 1].to_vec();
+    words.pop();
+    words.push("other");
+    assert!(apportion(folder.path(), &words).status.success());
+    let output = apportion(folder.path(), &["compare", "run", "other"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(out(&output).contains("all together"), "{}", out(&output));
+    assert!(!out(&output).contains('\u{1b}'), "colours only on a terminal");
 }
 
 #[test]
@@ -164,6 +218,33 @@ fn completions_and_manual_are_printed() {
     {
         let output = apportion(folder.path(), words);
         assert!(output.status.success() && out(&output).contains(expected), "{words:?}");
+    }
+    assert!(apportion(folder.path(), &["man", "--out", "man1"]).status.success());
+    for page in ["apportion.1", "apportion-run.1", "apportion-compare.1"] {
+        assert!(folder.path().join("man1").join(page).exists(), "no {page}");
+    }
+    for shell in ["bash", "zsh", "fish"] {
+        let text = out(&apportion(folder.path(), &["completions", shell]));
+        // Fish is not told the values of words without a dash.
+        let experiment = if shell == "fish" { "compare" } else { "cull-large" };
+        for word in [experiment, "lock_free", "e4000", "frame_time_p90"] {
+            assert!(text.contains(word), "{shell} does not offer {word}");
+        }
+        std::fs::write(folder.path().join(shell), &text).expect("it is written");
+        // A shell that is not there checks nothing.
+        if let Ok(checked) = Command::new(shell).arg("-n").arg(folder.path().join(shell)).output() {
+            assert!(checked.status.success(), "{shell}: {}", String::from_utf8_lossy(&checked.stderr));
+        }
+    }
+}
+
+#[test]
+fn every_help_has_examples() {
+    let folder = empty();
+    for word in ["list", "run", "table", "compare", "scene", "machine", "stress", "completions", "man"] {
+        let text = out(&apportion(folder.path(), &["help", word]));
+        let examples = text.split_once("Examples:\n").map_or("", |(_, examples)| examples);
+        assert!(examples.contains(&format!("  apportion {word}")), "{text}");
     }
 }
 

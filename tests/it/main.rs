@@ -2,6 +2,7 @@
 
 mod advise;
 mod command_line;
+mod compare;
 mod experiment;
 mod house_rules;
 mod mock;
@@ -12,3 +13,5 @@ mod run;
 mod scene;
 mod schemes;
 mod structure;
+mod trace;
+mod trace_file;

@@ -50,6 +50,24 @@ fn a_torn_tail_is_cut_back_and_an_unfinished_cell_is_dropped() {
 }
 
 #[test]
+fn a_log_is_written_by_one_at_a_time() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("rows.jsonl");
+    // Also by one who had to write the file anew, without the unfinished cell.
+    for _ in 0..2 {
+        let (mut log, _) = RowLog::open(&path).expect("nobody else has it open");
+        let error = RowLog::open(&path).expect_err("it is open").to_string();
+        assert_eq!(
+            error,
+            format!("{} is being written by another run: wait for it to end", folder.path().display())
+        );
+        log.append(&row(0, "cell_complete", 1.0)).expect("it is written");
+        log.append(&row(1, "frame_time", 1.0)).expect("it is written");
+    }
+    assert_eq!(RowLog::open(&path).expect("it is closed").1.len(), 2);
+}
+
+#[test]
 fn a_line_that_is_no_record_is_an_error_that_names_it() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("rows.jsonl");

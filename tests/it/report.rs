@@ -70,8 +70,70 @@ fn the_text_says_what_a_reader_looks_for() {
     ] {
         assert!(text.contains(part), "no `{part}` in\n{text}");
     }
-    assert!(text.lines().all(|line| line.len() <= 120), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    assert!(!text.contains("figures, measured"), "the papers' machines were of another kind: {text}");
     assert_eq!(table(&[], &[]).text(), "no rows to show");
+}
+
+#[test]
+fn a_peak_over_fewer_processors_is_not_held_against_the_papers() {
+    let selection = Selection { processors: Some("1-2,4".to_owned()), ..Selection::default() };
+    let experiment = mock::experiment();
+    let mut narrowed = table(&rows_of(&selection), &experiment.paper);
+    let whole = |machine: &str| apportion::measure::Plan::whole_counts(&experiment, machine, 2);
+    narrowed.hold_peaks_to(whole);
+    assert_eq!(narrowed.lines[1].error_simulated, None);
+    assert!(narrowed.lines[1].simulated.is_some());
+    assert!(narrowed.text().contains("peak of 1-2,4"), "{}", narrowed.text());
+    let mut all = table(&rows(), &experiment.paper);
+    all.hold_peaks_to(whole);
+    assert!(all.lines[1].error_simulated.is_some() && !all.text().contains("peak of"), "{}", all.text());
+}
+
+/// A run on threads whose speedups are given: scheme, then one for each repeat.
+fn measured(speedups: &[(&str, &[f64])]) -> Vec<Row> {
+    let template = rows().into_iter().find(|row| row.machine == "threads").expect("threads ran");
+    let row = |scheme: &str, repeat: usize, metric: &str, value: f64| Row {
+        scheme: scheme.to_owned(),
+        processors: 2,
+        repeat: repeat as u32,
+        frame: None,
+        metric: metric.to_owned(),
+        value,
+        ..template.clone()
+    };
+    let mut rows = Vec::new();
+    for (scheme, values) in speedups {
+        for (repeat, value) in values.iter().enumerate() {
+            rows.push(row(scheme, repeat, "speedup", *value));
+            rows.push(row(scheme, repeat, "lost_time", 3.0));
+        }
+    }
+    rows
+}
+
+#[test]
+fn a_run_says_what_it_cannot_tell() {
+    // Paired: the queue is always a tenth slower than the ring, though both drift by more than that.
+    let ring = [1.5, 1.8, 1.4, 1.9, 1.6, 1.7, 1.5];
+    let queue = ring.map(|speedup| 0.9 * speedup);
+    let stealing = [1.6, 1.7, 1.5, 1.8, 1.7, 1.6, 0.2];
+    let text = table(&measured(&[("ring", &ring), ("queue", &queue), ("stealing", &stealing)]), &[]).text();
+    assert!(text.contains("cannot tell ring from stealing at P=2"), "{text}");
+    assert!(text.contains("(kept): stealing at P=2 1 of 7"), "{text}");
+    assert!(text.contains("other work took 3.0 % of a core"), "{text}");
+    let text = table(&measured(&[("ring", &ring), ("queue", &queue)]), &[]).text();
+    assert!(!text.contains("cannot tell"), "{text}");
+    let text = table(&measured(&[("ring", &ring[..3]), ("queue", &queue[..3])]), &[]).text();
+    assert!(text.contains("cannot tell schemes apart at P=2: it takes 6 repeats"), "{text}");
+}
+
+#[test]
+fn speedups_that_are_not_sure_are_named() {
+    let rows = measured(&[("ring", &[1.5; 7]), ("queue", &[1.0, 1.4, 1.0, 1.4, 1.0, 1.4, 1.2])]);
+    let loose = apportion::report::loose(&rows, 5.0);
+    assert_eq!(loose.len(), 1);
+    assert!(loose[0].contains("queue at P=2 (16.7 %)"), "{loose:?}");
 }
 
 /// The files drawn from those rows.

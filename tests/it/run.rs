@@ -1,7 +1,7 @@
 //! The plan and the runner, with a mock in place of the jobs.
 
 use crate::mock;
-use apportion::measure::{Ending, MeasureError, Selection, Subject, run};
+use apportion::measure::{Cell, Ending, MeasureError, Options, Plan, Selection, Subject, Until, run};
 use apportion::record::{Row, RowLog, read_rows};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -151,7 +151,7 @@ fn a_failing_cell_is_named_and_the_rows_before_it_are_kept() {
     let plan = mock::plan(&Selection::default());
     let (mut log, kept) = RowLog::open(&path).expect("it opens");
     let mut open = |cell: &_, options: &_| -> Result<Box<dyn Subject>, MeasureError> {
-        let cell: &apportion::measure::Cell = cell;
+        let cell: &Cell = cell;
         if cell.scheme == "ring" {
             Err(MeasureError::Failed("boom".to_owned()))
         } else {
@@ -165,11 +165,91 @@ fn a_failing_cell_is_named_and_the_rows_before_it_are_kept() {
     assert_eq!(complete.iter().filter(|row| row.metric == "cell_complete").count(), 14);
 }
 
+/// Runs until the speedups are within 2 per cent; those of `ring` on threads never are.
+fn run_until(path: &Path, at_most: Duration, stop_after: usize) -> Ending {
+    struct Noisy(f64);
+    impl Subject for Noisy {
+        fn sample(&mut self, repeat: u32) -> Result<Vec<apportion::measure::Sample>, MeasureError> {
+            let value = self.0 * (1.0 + f64::from(repeat % 4));
+            Ok(vec![apportion::measure::Sample { metric: "frame_time", frame: Some(0), value }])
+        }
+    }
+    let mut plan =
+        mock::plan(&Selection { until: Some(2.0), processors: Some("2".to_owned()), ..Selection::default() });
+    plan.options.until = plan.options.until.map(|until| Until { at_most, ..until });
+    let mut open = |cell: &Cell, options: &Options| -> Result<Box<dyn Subject>, MeasureError> {
+        if cell.scheme == "ring" && !cell.is_simulated() {
+            return Ok(Box::new(Noisy(mock::frame_time(cell))));
+        }
+        mock::open(cell, options)
+    };
+    let (mut log, kept) = RowLog::open(path).expect("it opens");
+    let stop = AtomicBool::new(false);
+    let mut begun = 0;
+    let mut watch = |_: apportion::measure::Progress<'_>| {
+        begun += 1;
+        stop.store(begun >= stop_after, Ordering::Relaxed);
+    };
+    run(&plan, "id", (&mut log, &kept), &mut open, &mut watch, &stop).expect("it runs")
+}
+
+/// How many repeats of serial cells there are, on threads and simulated.
+fn repeats(path: &Path) -> [usize; 2] {
+    let rows = read_rows(path).expect("the log is whole");
+    let of = |machine: &str| {
+        let complete = rows.iter().filter(|row| row.metric == "cell_complete" && row.scheme == "serial");
+        complete.filter(|row| row.machine == machine).count()
+    };
+    [of("threads"), of("e4000")]
+}
+
+#[test]
+fn until_goes_on_while_a_speedup_is_not_sure() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| folder.path().join(name);
+    // Time is up at once: the repeats there have to be, 6 or more, and no other.
+    assert_eq!(run_until(&path("late"), Duration::ZERO, usize::MAX), Ending::Complete);
+    assert_eq!(repeats(&path("late")), [6, 1]);
+    // There is time: it goes on until it is told to stop, on threads only, also when it is taken up.
+    for _ in 0..2 {
+        let ending = run_until(&path("noisy"), Duration::from_secs(3_600), 100);
+        assert!(matches!(ending, Ending::Stopped { left } if (1..10).contains(&left)), "{ending:?}");
+    }
+    let [threads, simulated] = repeats(&path("noisy"));
+    assert!(threads > 30 && simulated == 1, "{threads} and {simulated}");
+    // The mock is always sure: 6 repeats do.
+    let (mut log, kept) = RowLog::open(&path("sure")).expect("it opens");
+    let plan = mock::plan(&Selection { until: Some(2.0), ..Selection::default() });
+    let ending = run(&plan, "id", (&mut log, &kept), &mut mock::open, &mut |_| {}, &AtomicBool::new(false));
+    assert_eq!((ending.expect("it runs"), repeats(&path("sure"))), (Ending::Complete, [6, 1]));
+}
+
+#[test]
+fn a_machines_settings_hold_for_a_file_of_its_name() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("mine.toml").display().to_string();
+    let text = apportion::measure::inspect::machine(Some("e4000"), &mut |_| {}).expect("there is one");
+    std::fs::write(&file, format!("\u{feff}{text}")).expect("it is written");
+    let experiment = mock::EXPERIMENT.replace("[settings]", "[settings]\n\"e4000.memory\" = 99");
+    let experiment = apportion::measure::Experiment::parse("mock", "mock.toml", &experiment, &mock::known());
+    let selection = Selection { machines: vec![file], ..Selection::default() };
+    let plan = Plan::new(&experiment.expect("it is well-formed"), &selection, &mock::known(), 2);
+    let cells = plan.expect("the processors of e4000 hold for it too").cells;
+    assert_eq!(cells.iter().map(|cell| cell.processors).max(), Some(13));
+    for cell in &cells {
+        assert_eq!(
+            cell.settings.get("machine.memory").map(ToString::to_string),
+            Some("99".to_owned()),
+            "{cell}"
+        );
+    }
+}
+
 #[test]
 fn what_cannot_run_is_said_in_words() {
     let refused = |selection: Selection| {
-        let error = apportion::measure::Plan::new(&mock::experiment(), &selection, &mock::known(), 2)
-            .expect_err("it must be refused");
+        let error =
+            Plan::new(&mock::experiment(), &selection, &mock::known(), 2).expect_err("it must be refused");
         assert!(error.is_usage(), "{error}");
         error.to_string()
     };

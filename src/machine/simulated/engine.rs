@@ -10,6 +10,7 @@
 use super::arena::Extent;
 use super::memory::{Access, Coherence};
 use super::model::Model;
+use super::trace::Tracing;
 use corosensei::Yielder;
 use std::cell::Cell;
 use std::cmp::Reverse;
@@ -49,6 +50,8 @@ pub(super) struct Engine {
     pub(super) extents: Vec<Extent>,
     pub(super) clocks: Vec<u64>,
     pub(super) statistics: Statistics,
+    /// The trace being made, if any.
+    pub(super) tracing: Option<Tracing>,
     /// State of the generator of random delays, for schedule exploration.
     pub(super) noise: Option<u64>,
     /// Those who could run now, the current one excepted.
@@ -74,6 +77,7 @@ impl Engine {
             extents: Vec::new(),
             clocks: Vec::new(),
             statistics: Statistics::default(),
+            tracing: None,
             noise: None,
             ready: BinaryHeap::new(),
             current: 0,
@@ -98,6 +102,9 @@ impl Engine {
         self.parked = vec![false; processors];
         self.tickets.resize(processors.max(self.tickets.len()), 0);
         self.watchers.clear();
+        if let Some(tracing) = &mut self.tracing {
+            tracing.begin(processors);
+        }
         self.next = None;
         self.ready.clear();
         for p in 0..processors {
@@ -217,6 +224,14 @@ impl Drop for Installed {
 /// Whether a virtual processor runs on this thread.
 pub(super) fn is_running() -> bool {
     !CURRENT.get().is_null()
+}
+
+/// Does something with the engine that bills this thread, which must not suspend; nothing outside a run.
+#[inline]
+pub(super) fn with<R>(act: impl FnOnce(&mut Engine) -> R) -> Option<R> {
+    let engine = CURRENT.get();
+    // SAFETY: the engine outlives the run; nothing suspends while this borrow lasts.
+    (!engine.is_null()).then(|| act(unsafe { &mut *engine }))
 }
 
 /// Remembers how processor `p` suspends itself.

@@ -10,9 +10,10 @@ mod arena;
 mod engine;
 mod memory;
 mod model;
+mod trace;
 mod word;
 
-use crate::machine::{Layout, Machine, Processor, RunError, Shared, Word, panic_message};
+use crate::machine::{Activity, Layout, Machine, Processor, RunError, Shared, Trace, Word, panic_message};
 use arena::Memory;
 use corosensei::stack::DefaultStack;
 use corosensei::{Coroutine, CoroutineResult};
@@ -23,6 +24,7 @@ use std::cell::UnsafeCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
+use trace::Tracing;
 pub use word::{SimulatedSlot, SimulatedWord};
 
 /// The most virtual processors a run may have.
@@ -107,6 +109,12 @@ impl Simulated {
     /// which the others spin, and waits until all have counted themselves out.
     fn gated<L>(&self, cpu: &VirtualProcessor, body: impl FnOnce() -> L) -> L {
         let (start, finished) = (&self.start[0], &self.finished[0]);
+        let body = || {
+            cpu.enter(Activity::Sending);
+            let result = body();
+            cpu.enter(Activity::Barrier);
+            result
+        };
         if cpu.count == 1 {
             return body();
         }
@@ -137,6 +145,7 @@ pub struct VirtualProcessor {
 
 impl Processor for VirtualProcessor {
     type Word = SimulatedWord;
+    const MARKS_WITHIN: bool = true;
 
     fn id(&self) -> usize {
         self.id
@@ -162,8 +171,26 @@ impl Processor for VirtualProcessor {
         engine::pause();
     }
 
-    fn wait_until(&self, words: &[&SimulatedWord], ready: impl FnMut() -> bool) {
-        engine::wait_until(words.iter().map(|w| std::ptr::from_ref(*w).addr()), ready);
+    fn wait_until(&self, words: &[&SimulatedWord], mut ready: impl FnMut() -> bool) {
+        let mut before = None;
+        engine::wait_until(words.iter().map(|w| std::ptr::from_ref(*w).addr()), || {
+            let is_ready = ready();
+            if !is_ready && before.is_none() {
+                before = Some(trace::begin_wait(self.id));
+            }
+            is_ready
+        });
+        if let Some(before) = before {
+            self.enter(before);
+        }
+    }
+
+    fn enter(&self, activity: Activity) -> Activity {
+        trace::enter(self.id, activity)
+    }
+
+    fn take_up(&self, _size: usize) -> bool {
+        trace::take_up(self.id)
     }
 }
 
@@ -280,6 +307,18 @@ impl Machine for Simulated {
     fn start_ticks(&self, processors: usize) -> u64 {
         // Each processor's copy of the start word, and its turn at the finishing count.
         processors as u64 * 2 * self.model.cache_to_cache + self.model.start + self.model.finish
+    }
+
+    fn start_trace(&self) -> bool {
+        let mut state = self.lock();
+        state.engine.tracing = Some(Tracing::new(state.now));
+        true
+    }
+
+    fn take_trace(&self) -> Option<Trace> {
+        let mut state = self.lock();
+        let tracing = state.engine.tracing.take()?;
+        Some(tracing.end(state.now))
     }
 
     fn charged(&self) -> Option<u64> {

@@ -143,7 +143,8 @@ impl Model {
     /// # Errors
     /// [`ModelError::Parse`] and [`ModelError::Value`].
     pub fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
-        let model: Model = toml::from_str(text)
+        // Some editors begin a file with a byte order mark.
+        let model: Model = toml::from_str(text.trim_start_matches('\u{feff}'))
             .map_err(|e| ModelError::Parse { file: file.to_owned(), message: e.to_string() })?;
         model.check(file)?;
         Ok(model)

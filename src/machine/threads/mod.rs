@@ -4,17 +4,19 @@
 //! two wakes one helper. Helpers are pinned to cores of their own where the system allows it.
 
 mod team;
+mod track;
 mod word;
 
 use crate::machine::shared::Heap;
-use crate::machine::{Ended, Layout, Machine, Processor, RunError, Shared, panic_message};
+use crate::machine::{Activity, Ended, Layout, Machine, Processor, RunError, Shared, Trace, panic_message};
 use core_affinity::CoreId;
-use std::cell::UnsafeCell;
+use std::cell::{Cell, RefCell, UnsafeCell};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 use team::Team;
+use track::{LARGE, Lent};
 pub use word::{NativeSlot, NativeWord};
 
 /// The most threads a team may have: far beyond any sensible oversubscription of one host.
@@ -50,8 +52,6 @@ impl Default for TeamSettings {
 pub struct Threads {
     team: Team,
     started: Instant,
-    /// The calling thread's handle when it runs alone.
-    alone: Thread,
 }
 
 impl Threads {
@@ -75,7 +75,7 @@ impl Threads {
                 machine: "threads".to_owned(),
             });
         }
-        Ok(Threads { team: Team::start(processors, settings)?, started: now(), alone: Thread::outside(0, 1) })
+        Ok(Threads { team: Team::start(processors, settings)?, started: now() })
     }
 
     /// Whether a run on `processors` would have to wake a sleeping helper.
@@ -117,21 +117,62 @@ pub struct Thread {
     count: usize,
     /// Busy-wait turns before the core is offered to somebody else.
     patience: u32,
-    ended: Arc<AtomicBool>,
+    /// Whether the run has failed; none for one who is in no team.
+    ended: Option<Arc<AtomicBool>>,
+    /// Tasks until the next one that is looked into for a trace, itself included; 0 without a trace.
+    left: Cell<u32>,
+    track: RefCell<Option<Lent>>,
 }
 
 impl Thread {
+    fn new(id: usize, count: usize, patience: u32, ended: Option<Arc<AtomicBool>>) -> Self {
+        Thread { id, count, patience, ended, left: Cell::new(0), track: RefCell::new(None) }
+    }
+
     /// A handle for code that runs outside a team, such as a rival library's own pool.
     pub(crate) fn outside(id: usize, count: usize) -> Self {
-        Thread { id, count, patience: 0, ended: Arc::new(AtomicBool::new(false)) }
+        Thread::new(id, count, 0, None)
     }
 
     #[inline]
     fn end_if_told(&self) {
         // ORDERING: Relaxed: the flag carries no data; the payload travels through the team's mutex.
-        if self.ended.load(Ordering::Relaxed) {
+        if self.ended.as_ref().is_some_and(|ended| ended.load(Ordering::Relaxed)) {
             std::panic::resume_unwind(Box::new(Ended));
         }
+    }
+
+    /// Marks on this track from now on, or sends the one in hand home.
+    fn follow(&mut self, track: Option<Lent>) {
+        self.left.set(u32::from(track.is_some()));
+        *self.track.get_mut() = track;
+    }
+
+    /// Marks that this worker waits, unless it is idle anyway; returns what it did before.
+    #[inline]
+    fn begin_wait(&self) -> Activity {
+        let now = if self.left.get() == 0 { Activity::Idle } else { self.now() };
+        if now == Activity::Idle { now } else { self.enter(Activity::Waiting) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn now(&self) -> Activity {
+        self.track.borrow().as_ref().map_or(Activity::Idle, Lent::now)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn mark(&self, activity: Activity) -> Activity {
+        self.track.borrow_mut().as_mut().map_or(activity, |track| track.enter(activity))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn look_into(&self, size: usize) -> bool {
+        let pass = self.track.borrow_mut().as_mut().map_or(0, |track| track.take_up(size));
+        self.left.set(pass.max(1));
+        pass == 0
     }
 }
 
@@ -166,15 +207,38 @@ impl Processor for Thread {
 
     #[inline]
     fn wait_until(&self, _words: &[&NativeWord], mut ready: impl FnMut() -> bool) {
-        let mut turns = 0;
+        let (mut before, mut turns) = (None, 0);
         while !ready() {
             self.end_if_told();
+            if before.is_none() {
+                before = Some(self.begin_wait());
+            }
             turns += 1;
             if turns < self.patience {
                 std::hint::spin_loop();
             } else {
                 turns = 0;
                 std::thread::yield_now();
+            }
+        }
+        if let Some(before) = before {
+            self.enter(before);
+        }
+    }
+
+    #[inline]
+    fn enter(&self, activity: Activity) -> Activity {
+        if self.left.get() == 0 { activity } else { self.mark(activity) }
+    }
+
+    #[inline]
+    fn take_up(&self, size: usize) -> bool {
+        match self.left.get() {
+            0 => false,
+            left if left == 1 || size > LARGE => self.look_into(size),
+            left => {
+                self.left.set(left - 1);
+                false
             }
         }
     }
@@ -225,8 +289,25 @@ impl Machine for Threads {
 
     #[inline]
     fn alone<L: Send>(&self, body: impl FnOnce(&Thread) -> L + Send) -> Result<L, RunError> {
-        catch_unwind(AssertUnwindSafe(|| body(&self.alone)))
+        let mut alone = Thread::outside(0, 1);
+        alone.follow(self.team.tracks().lend(0, Activity::Sending));
+        catch_unwind(AssertUnwindSafe(|| body(&alone)))
             .map_err(|payload| RunError::Panicked { processor: 0, message: panic_message(&*payload) })
+    }
+
+    fn start_trace(&self) -> bool {
+        self.team.tracks().start(self.team.processors());
+        true
+    }
+
+    fn take_trace(&self) -> Option<Trace> {
+        self.team.tracks().take()
+    }
+
+    fn outside(&self, processor: usize, processors: usize) -> Thread {
+        let mut thread = Thread::outside(processor, processors);
+        thread.follow(self.team.tracks().lend(processor, Activity::Idle));
+        thread
     }
 
     fn start_ticks(&self, processors: usize) -> u64 {

@@ -5,9 +5,10 @@
 //! word; 4. the caller waits for all of them before it returns, whatever happened, so the borrowed
 //! body outlives its users.
 
+use super::track::Tracks;
 use super::{MOST, NativeWord, TeamSettings, Thread, now};
 use crate::machine::handoff::Handoff;
-use crate::machine::{Ended, RunError, Word, panic_message};
+use crate::machine::{Activity, Ended, RunError, Word, panic_message};
 use core_affinity::CoreId;
 use crossbeam::utils::CachePadded;
 use std::any::Any;
@@ -27,6 +28,15 @@ struct Common {
     failure: Mutex<Option<(usize, String)>>,
     spin: Duration,
     patience: u32,
+    tracks: Tracks,
+}
+
+#[derive(Clone, Copy)]
+struct Job {
+    body: Body,
+    processors: usize,
+    /// Told here, so that a helper looks at nothing else to know.
+    traced: bool,
 }
 
 #[derive(Default)]
@@ -34,7 +44,7 @@ struct Common {
 struct Helper {
     handoff: Handoff<NativeWord>,
     /// What to run, in the very line whose change tells of it: one transfer instead of two.
-    job: UnsafeCell<Option<(Body, usize)>>,
+    job: UnsafeCell<Option<Job>>,
     done: CachePadded<Done>,
 }
 
@@ -82,6 +92,7 @@ impl Team {
             failure: Mutex::new(None),
             spin: settings.spin,
             patience,
+            tracks: Tracks::default(),
         });
         if settings.pin_caller
             && let Some(&core) = cores.first()
@@ -116,6 +127,10 @@ impl Team {
         self.common.helpers.iter().take(processors - 1).any(|h| h.handoff.is_parked())
     }
 
+    pub(super) fn tracks(&self) -> &Tracks {
+        &self.common.tracks
+    }
+
     /// Runs `body` on processors `0 .. processors`, the caller being 0.
     pub(super) fn run(&self, processors: usize, body: &(dyn Fn(&Thread) + Sync)) -> Result<(), RunError> {
         // ORDERING: Acquire pairs with the Release below: one run's writes precede the next one's.
@@ -132,12 +147,20 @@ impl Team {
         let erased: Body = unsafe {
             std::mem::transmute::<*const (dyn Fn(&Thread) + Sync + '_), Body>(std::ptr::from_ref(body))
         };
+        let traced = common.tracks.are_on();
+        let job = Job { body: erased, processors, traced };
         for (helper, thread) in common.helpers.iter().zip(&self.threads).take(processors - 1) {
             // SAFETY: no helper runs now (see `Common`), so nobody reads the job.
-            unsafe { *helper.job.get() = Some((erased, processors)) };
+            unsafe { *helper.job.get() = Some(job) };
             helper.handoff.post(*epoch, || thread.thread().unpark());
         }
+        if traced {
+            me.follow(common.tracks.lend(0, Activity::Sending));
+        }
         let outcome = catch_unwind(AssertUnwindSafe(|| body(me)));
+        if traced {
+            me.follow(None);
+        }
         if let Err(payload) = outcome {
             common.fail(0, &*payload);
         }
@@ -184,7 +207,7 @@ impl Drop for Team {
 impl Common {
     /// The handle of processor `id`, made once: counting references every run would move a line.
     fn thread(&self, id: usize) -> Thread {
-        Thread { id, count: 1, patience: self.patience, ended: Arc::clone(&self.ended) }
+        Thread::new(id, 1, self.patience, Some(Arc::clone(&self.ended)))
     }
 
     /// Notes the first real panic and tells the others to end.
@@ -223,10 +246,16 @@ fn work(common: &Common, id: usize) {
             return;
         }
         // SAFETY: the post that was just received follows the write of the job (Release, Acquire).
-        let (body, count) = unsafe { *helper.job.get() }.expect("a post follows its job");
-        me.count = count;
+        let job = unsafe { *helper.job.get() }.expect("a post follows its job");
+        me.count = job.processors;
+        if job.traced {
+            me.follow(common.tracks.lend(id, Activity::Sending));
+        }
         // SAFETY: the caller keeps the body alive until `done` is written.
-        let outcome = catch_unwind(AssertUnwindSafe(|| unsafe { (*body)(&me) }));
+        let outcome = catch_unwind(AssertUnwindSafe(|| unsafe { (*job.body)(&me) }));
+        if job.traced {
+            me.follow(None);
+        }
         if let Err(payload) = outcome {
             common.fail(id, &*payload);
         }

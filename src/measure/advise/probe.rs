@@ -91,7 +91,14 @@ impl Probe {
             processors: question.processors.unwrap_or(there as u32),
             shape,
             notes,
-            options: Options { frames: FRAMES, repeats: 1, seed: SEED, path: None },
+            options: Options {
+                frames: FRAMES,
+                path_frames: None,
+                repeats: 1,
+                until: None,
+                seed: SEED,
+                path: None,
+            },
             cache,
         })
     }

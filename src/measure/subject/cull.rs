@@ -6,8 +6,8 @@
 
 use super::settings::{JobSettings, of_scheme};
 use super::{
-    Cell, MeasureError, Options, Sample, Stage, Subject, SubjectCache, TraversalShare, failed,
-    load_imbalance, simulated,
+    Cell, FrameTrace, MeasureError, Nearest, Options, Sample, Stage, Subject, SubjectCache, TraversalShare,
+    failed, load_imbalance, simulated,
 };
 use crate::geometry::{Frustum, culling};
 use crate::job::cull::{Costs, CullTree, Descent, Frame, History, Tests};
@@ -80,7 +80,7 @@ impl<H: Borrow<M>, M: Machine> CullSubject<H, M> {
     ) -> Result<Self, MeasureError> {
         let on = machine.borrow();
         let scheme = Scheme::new(&cell.scheme, on, cell.processors as usize, of_scheme(cell))
-            .map_err(|error| MeasureError::Words(error.to_string()))?;
+            .map_err(|error| MeasureError::Setting(error.to_string()))?;
         let tree = CullTree::new(on, &stage.tree, asked.history);
         let expected =
             stage.cameras.iter().map(|camera| expected(&stage, &Frustum::new(camera), asked.descent));
@@ -117,6 +117,19 @@ fn expected(stage: &Stage, frustum: &Frustum, descent: Descent) -> Vec<u32> {
 
 impl<H: Borrow<M>, M: Machine> Subject for CullSubject<H, M> {
     fn sample(&mut self, _repeat: u32) -> Result<Vec<Sample>, MeasureError> {
+        self.go(None)
+    }
+
+    fn trace(&mut self, time: f64) -> Result<Option<FrameTrace>, MeasureError> {
+        let mut nearest = Nearest::new(time);
+        self.go(Some(&mut nearest))?;
+        Ok(nearest.found())
+    }
+}
+
+impl<H: Borrow<M>, M: Machine> CullSubject<H, M> {
+    /// Goes through the path, with a trace of each frame or without, until the frame looked for is found.
+    fn go(&mut self, mut trace: Option<&mut Nearest>) -> Result<Vec<Sample>, MeasureError> {
         let machine = self.machine.borrow();
         let mut samples = Vec::new();
         let mut traversal = TraversalShare::default();
@@ -128,19 +141,20 @@ impl<H: Borrow<M>, M: Machine> Subject for CullSubject<H, M> {
             if !self.asked.pause.is_zero() && machine.is_native() {
                 std::thread::sleep(self.asked.pause);
             }
+            if trace.is_some() {
+                machine.start_trace();
+            }
             let before = machine.now();
             let shares = match self.asked.by_nodes {
                 true => self.scheme.run(machine, &frame.nodes()),
                 false => self.scheme.run(machine, &frame.ranges()),
             };
             let ticks = machine.now() - before;
+            let traced = machine.take_trace();
             let shares = shares.map_err(failed)?;
             traversal.add(machine, shares.len(), ticks);
-            samples.push(Sample::of_frame(
-                "frame_time",
-                number,
-                ticks as f64 / machine.ticks_per_nanosecond(),
-            ));
+            let time = ticks as f64 / machine.ticks_per_nanosecond();
+            samples.push(Sample::of_frame("frame_time", number, time));
             let found = self.tree.visible(shares.iter().map(|share| &share.found));
             if found != self.expected[number] {
                 let (found, expected) = (found.len(), self.expected[number].len());
@@ -152,6 +166,10 @@ impl<H: Borrow<M>, M: Machine> Subject for CullSubject<H, M> {
             used += shares.len();
             visited += shares.iter().map(|share| share.visited).sum::<u64>();
             imbalance += load_imbalance(shares.iter().map(|share| share.visited));
+            let tick = 1.0 / machine.ticks_per_nanosecond();
+            if trace.as_mut().is_some_and(|nearest| nearest.look(time, number, traced, tick)) {
+                break;
+            }
         }
         let frames = self.stage.cameras.len() as f64;
         samples.push(Sample::of_path("nodes_visited", visited as f64 / frames));

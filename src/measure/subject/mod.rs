@@ -4,7 +4,8 @@ mod cull;
 mod settings;
 mod tree;
 
-use super::{Cell, MeasureError, Options};
+use super::trace::Nearest;
+use super::{Cell, FrameTrace, MeasureError, Options};
 use crate::geometry::Camera;
 use crate::machine::simulated::{Model, ModelError};
 use crate::machine::threads::TeamSettings;
@@ -15,6 +16,7 @@ use crate::scheme::tree::SCHEMES;
 use crate::structure::{AabbTree, SkipTree};
 use std::collections::HashMap;
 use std::fmt::Display;
+use std::path::Path;
 use std::rc::Rc;
 use std::time::Duration;
 
@@ -48,6 +50,16 @@ pub trait Subject {
     /// # Errors
     /// The run failed, or its result is not the oracle's.
     fn sample(&mut self, repeat: u32) -> Result<Vec<Sample>, MeasureError>;
+
+    /// Goes through the path once more, tracing each frame, and returns the one whose time comes nearest to
+    /// `time` ns; none where traces cannot be had. It ends early where that is met exactly.
+    ///
+    /// # Errors
+    /// As [`Subject::sample`].
+    fn trace(&mut self, time: f64) -> Result<Option<FrameTrace>, MeasureError> {
+        let _ = time;
+        Ok(None)
+    }
 }
 
 /// The names there are: what experiments and the command line may ask for.
@@ -118,7 +130,8 @@ impl SubjectCache {
         let path = match &options.path {
             Some(file) => {
                 let size = scene.bounds().size().length().max(1e-3);
-                CameraPath::read_csv(file, NEAR_SHARE * size, FAR_SHARE * size).map_err(failed)?
+                let path = CameraPath::read_csv(file, NEAR_SHARE * size, FAR_SHARE * size).map_err(failed)?;
+                first_frames(path, file, options.path_frames)?
             }
             None => CameraPath::for_scene(&scene, options.frames as usize, options.seed),
         };
@@ -144,6 +157,19 @@ impl SubjectCache {
         self.teams.insert(processors, team.clone());
         Ok(team)
     }
+}
+
+/// The frames asked for of a recorded path.
+fn first_frames(mut path: CameraPath, file: &Path, asked: Option<u32>) -> Result<CameraPath, MeasureError> {
+    if let Some(asked) = asked {
+        let there = path.frames.len();
+        if there < asked as usize {
+            let message = format!("{}: {there} frames, where --frames asks for {asked}", file.display());
+            return Err(MeasureError::Words(message));
+        }
+        path.frames.truncate(asked as usize);
+    }
+    Ok(path)
 }
 
 /// How long a measured team spins between frames: longer than the pauses of any experiment here, so
@@ -176,10 +202,11 @@ fn simulated(cell: &Cell, cache: &SubjectCache) -> Result<Simulated, MeasureErro
         let Some(constant) = key.strip_prefix("machine.").or_else(|| key.strip_prefix(&prefix)) else {
             continue;
         };
-        let number = value
-            .number()
-            .ok_or_else(|| MeasureError::Words(format!("setting `{key}` is `{value}`, expected a number")))?;
-        model.set(constant, number).map_err(|error| MeasureError::Words(error.to_string()))?;
+        let number = value.number().ok_or_else(|| {
+            MeasureError::Setting(format!("setting `{key}` is `{value}`, expected a number"))
+        })?;
+        let wrong = |error: ModelError| MeasureError::Setting(format!("setting `{key}`: {error}"));
+        model.set(constant, number).map_err(wrong)?;
     }
     Ok(Simulated::new(model))
 }

@@ -1,6 +1,7 @@
 //! The settings of a cell, told apart: those of the job, and those of its scheme.
 
 use super::{Cell, MeasureError};
+use crate::measure::near;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
@@ -28,7 +29,7 @@ impl JobSettings {
         let Some(value) = self.values.get(key) else { return Ok(words[0].1) };
         words.iter().find(|(word, _)| word == value).map(|(_, choice)| *choice).ok_or_else(|| {
             let words = words.iter().map(|(word, _)| *word).collect::<Vec<_>>().join(", ");
-            MeasureError::Words(format!("setting `{key}` is `{value}`, expected one of: {words}"))
+            MeasureError::Setting(format!("setting `{}` is `{value}`, expected one of: {words}", whole(key)))
         })
     }
 
@@ -43,8 +44,9 @@ impl JobSettings {
         let Some(value) = self.values.get(key) else { return Ok(default) };
         value.parse().ok().filter(|number| range.contains(number)).ok_or_else(|| {
             let (least, most) = (range.start(), range.end());
-            MeasureError::Words(format!(
-                "setting `{key}` is `{value}`, expected a number from {least} to {most}"
+            MeasureError::Setting(format!(
+                "setting `{}` is `{value}`, expected a number from {least} to {most}",
+                whole(key)
             ))
         })
     }
@@ -60,7 +62,10 @@ impl JobSettings {
         let ends =
             value.split_once('-').and_then(|(least, most)| Some((least.parse().ok()?, most.parse().ok()?)));
         ends.filter(|(least, most)| least <= most).map(|(least, most)| least..=most).ok_or_else(|| {
-            MeasureError::Words(format!("setting `{key}` is `{value}`, expected LEAST-MOST, such as 100-300"))
+            let key = whole(key);
+            MeasureError::Setting(format!(
+                "setting `{key}` is `{value}`, expected LEAST-MOST, such as 100-300"
+            ))
         })
     }
 
@@ -70,11 +75,21 @@ impl JobSettings {
         match self.values.keys().find(|key| !known.contains(&key.as_str())) {
             None => Ok(()),
             Some(key) => {
-                let (job, known) = (&cell.job, known.join(", "));
-                Err(MeasureError::Words(format!("job `{job}` has no setting `{key}`; it has: {known}")))
+                let near = near(key, known.iter().copied());
+                Err(MeasureError::Setting(format!(
+                    "job `{}` has no setting `{}`{near}",
+                    cell.job,
+                    whole(key)
+                )))
             }
         }
     }
+}
+
+/// A setting's key as an experiment has it.
+fn whole(key: &str) -> String {
+    let owner = if OF_THE_JOB.contains(&key) { "scheme" } else { "job" };
+    format!("{owner}.{key}")
 }
 
 fn part<'a>(cell: &'a Cell, prefix: &str) -> impl Iterator<Item = (String, String)> + use<'a> {

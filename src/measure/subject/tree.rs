@@ -5,8 +5,8 @@
 
 use super::settings::{JobSettings, of_scheme};
 use super::{
-    Cell, MeasureError, Options, Sample, Subject, SubjectCache, TraversalShare, failed, load_imbalance,
-    simulated,
+    Cell, FrameTrace, MeasureError, Nearest, Options, Sample, Subject, SubjectCache, TraversalShare, failed,
+    load_imbalance, simulated,
 };
 use crate::job::synthetic::Synthetic;
 use crate::machine::{Machine, Simulated, Threads};
@@ -61,7 +61,7 @@ impl<H: Borrow<M>, M: Machine> TreeSubject<H, M> {
     fn new(cell: &Cell, machine: H, asked: &Asked, options: &Options) -> Result<Self, MeasureError> {
         let on = machine.borrow();
         let scheme = Scheme::new(&cell.scheme, on, cell.processors as usize, of_scheme(cell))
-            .map_err(|error| MeasureError::Words(error.to_string()))?;
+            .map_err(|error| MeasureError::Setting(error.to_string()))?;
         let work = Synthetic::new(on, asked.nodes, asked.work_ns.clone(), options.seed);
         let pause = if on.is_native() { asked.pause } else { Duration::ZERO };
         Ok(TreeSubject { machine, work, scheme, pause, runs: options.frames as usize })
@@ -70,6 +70,19 @@ impl<H: Borrow<M>, M: Machine> TreeSubject<H, M> {
 
 impl<H: Borrow<M>, M: Machine> Subject for TreeSubject<H, M> {
     fn sample(&mut self, _repeat: u32) -> Result<Vec<Sample>, MeasureError> {
+        self.go(None)
+    }
+
+    fn trace(&mut self, time: f64) -> Result<Option<FrameTrace>, MeasureError> {
+        let mut nearest = Nearest::new(time);
+        self.go(Some(&mut nearest))?;
+        Ok(nearest.found())
+    }
+}
+
+impl<H: Borrow<M>, M: Machine> TreeSubject<H, M> {
+    /// Goes through the path, with a trace of each frame or without, until the frame looked for is found.
+    fn go(&mut self, mut trace: Option<&mut Nearest>) -> Result<Vec<Sample>, MeasureError> {
         let machine = self.machine.borrow();
         let mut samples = Vec::new();
         let mut traversal = TraversalShare::default();
@@ -78,12 +91,17 @@ impl<H: Borrow<M>, M: Machine> Subject for TreeSubject<H, M> {
             if !self.pause.is_zero() {
                 std::thread::sleep(self.pause);
             }
+            if trace.is_some() {
+                machine.start_trace();
+            }
             let before = machine.now();
             let shares = self.scheme.run(machine, &self.work);
             let ticks = machine.now() - before;
+            let traced = machine.take_trace();
             let shares = shares.map_err(failed)?;
             traversal.add(machine, shares.len(), ticks);
-            samples.push(Sample::of_frame("frame_time", run, ticks as f64 / machine.ticks_per_nanosecond()));
+            let time = ticks as f64 / machine.ticks_per_nanosecond();
+            samples.push(Sample::of_frame("frame_time", run, time));
             let nodes = shares.iter().map(|share| share.visited).sum::<u64>();
             let found = shares.iter().fold(0, |sum, share| sum ^ share.found);
             if nodes != self.work.len() as u64 || found != self.work.expected() {
@@ -95,6 +113,10 @@ impl<H: Borrow<M>, M: Machine> Subject for TreeSubject<H, M> {
             visited += nodes;
             used += shares.len();
             imbalance += load_imbalance(shares.iter().map(|share| share.visited));
+            let tick = 1.0 / machine.ticks_per_nanosecond();
+            if trace.as_mut().is_some_and(|nearest| nearest.look(time, run, traced, tick)) {
+                break;
+            }
         }
         let runs = self.runs.max(1) as f64;
         samples.push(Sample::of_path("nodes_visited", visited as f64 / runs));

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use gltf::accessor::{DataType, Dimensions};
 
-use super::super::{SceneError, error};
+use super::super::SceneError;
 use super::base64;
 
 /// The buffers of a document, by index.
@@ -39,7 +39,10 @@ impl<'a> Buffers<'a> {
                     None if uri.contains("://") => {
                         return Err(fail(&format!("the address {uri:?}"), "a file beside the document"));
                     }
-                    None => error::read(&path.with_file_name(unescape(uri)))?,
+                    None => std::fs::read(path.with_file_name(unescape(uri))).map_err(|error| {
+                        let found = format!("file {uri:?}, which cannot be read ({error})");
+                        fail(&found, "a file beside the document")
+                    })?,
                 },
             };
             if bytes.len() < buffer.length() {

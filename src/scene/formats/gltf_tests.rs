@@ -98,7 +98,7 @@ fn faults_are_named() {
         (glb(&json(""), &nan), "mesh 0 \"square\": vertex 0"),
         (glb(&json(""), &wild), "vertex index 9; expected indices below 4"),
         (glb(&json(r#""uri":"http://x/y.bin","#), &buffer()), "expected a file beside the document"),
-        (glb(&json(r#""uri":"none.bin","#), &buffer()), "none.bin: cannot be read"),
+        (glb(&json(r#""uri":"none.bin","#), &buffer()), "buffer 0: file \"none.bin\", which cannot be read"),
         (glb("{", &buffer()), "document"),
         (b"glTF".to_vec(), "header: no usable length"),
         (b"glTF\x02\0\0\0\x01\0\0\0".to_vec(), "header: no usable length"),

@@ -22,7 +22,8 @@ impl CameraPath {
     pub fn read_csv(path: impl AsRef<Path>, near: f32, far: f32) -> Result<Self, SceneError> {
         let file = path.as_ref().display().to_string();
         let text = error::read_text(path.as_ref())?;
-        let mut lines = text.lines().enumerate();
+        // Spreadsheets begin a file with a byte order mark.
+        let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
         let header = lines.next().map_or("", |(_, line)| line.trim_end());
         if header != HEADER {
             return Err(SceneError::malformed(&file, "line 1", format!("{header:?}"), HEADER));
@@ -119,7 +120,7 @@ mod tests {
     #[test]
     fn faults_are_named_with_line_and_column() {
         let good = "0,0,0,1,0,0,0,1,0,60";
-        assert_eq!(read(&format!("{HEADER}\r\n{good}\r\n\r\n")).unwrap().frames.len(), 1);
+        assert_eq!(read(&format!("\u{feff}{HEADER}\r\n{good}\r\n\r\n")).unwrap().frames.len(), 1);
         for (body, part) in [
             (String::new(), "walk.csv: line 1: \"\"; expected eye_x"),
             (format!("{HEADER}\n{good}\n0,0,0,1,0,0,0,one,0,60"), "line 3, column up_y: \"one\""),

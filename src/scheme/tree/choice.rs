@@ -4,7 +4,7 @@
 //! as many as there may be. Each way tried has a [`Line`], ticks = start + tasks x each, fitted to what
 //! its runs took, as frames differ in size and small ones bear fewer processors than large ones.
 //!
-//! Steps, for a run of so many tasks: 1. a tour of ways that have had no run yet: the first
+//! Steps, for a run of so many tasks: 1. a tour of ways that have had fewer than two runs: the first
 //! scheme climbs from 2 processors as long as it stays near its best (where already 2 take twice as long
 //! as one nothing else is tried); each other scheme is tried where the best so far stands and, where it
 //! comes near, climbs and descends from there; 2. otherwise the way that promises least, each a little
@@ -14,13 +14,15 @@
 /// The schemes tried, first the one with the fewest bad cases.
 pub(super) const SCHEMES: [&str; 3] = ["work_stealing", "lock_free", "receiver_initiated"];
 
+/// Runs of a way on the tour.
+const RUNS: u32 = 2;
 /// Weight of a way's first run, which may wake the team and warm the caches; the others have 1.
 const FIRST: f64 = 0.25;
 /// Less than the weight of two runs.
 const TWICE: f64 = 1.2;
 /// What remains of a run's weight when the way has had another, and when any way has had one.
 const FORGET: f64 = 0.97;
-const AGE: f64 = 0.999;
+const AGE: f64 = 0.9995;
 /// After runs of weight w a way may prove `DOUBT` / sqrt(w) better than its line says.
 const DOUBT: f64 = 0.2;
 /// Ways this much slower than the best one are no reason to look further in their direction.
@@ -53,6 +55,7 @@ pub fn levels(processors: usize) -> Vec<usize> {
 /// in small and large runs.
 #[derive(Clone, Copy, Debug, Default)]
 struct Line {
+    runs: u32,
     weight: f64,
     x: f64,
     y: f64,
@@ -68,6 +71,7 @@ impl Line {
         }
         self.fade(FORGET);
         let weight = if self.weight == 0.0 { FIRST } else { 1.0 };
+        self.runs += 1;
         self.weight += weight;
         self.x += weight * x;
         self.y += weight * y;
@@ -142,7 +146,7 @@ impl Choice {
     /// Lets so many runs pass whose times are not known.
     pub(super) fn age(&mut self, runs: i32) {
         let by = AGE.powi(runs);
-        self.shared.iter_mut().flatten().for_each(|line| line.fade(by));
+        self.shared.iter_mut().flatten().chain([&mut self.serial]).for_each(|line| line.fade(by));
     }
 
     /// The way to take for a run of so many tasks.
@@ -174,8 +178,8 @@ impl Choice {
             price *= PAYS;
             for scheme in 0..SCHEMES.len() {
                 let way = Way::Shared { scheme, level };
-                let doubt = DOUBT / self.shared[scheme][level].weight.max(DOUBT).sqrt();
-                let promise = price * self.ticks(way, tasks) * (1.0 - doubt);
+                let doubt = DOUBT / self.shared[scheme][level].weight.sqrt();
+                let promise = price * self.ticks(way, tasks) * (1.0 - doubt).max(0.0);
                 if promise < least {
                     (best, least) = (way, promise);
                 }
@@ -192,8 +196,7 @@ impl Choice {
         for scheme in 0..SCHEMES.len() {
             let at = |level| Way::Shared { scheme, level };
             let ticks = |level| self.ticks(at(level), tasks);
-            // What has been tried once fades, but stays tried.
-            let is_new = |level: usize| self.shared[scheme][level].weight == 0.0;
+            let is_new = |level: usize| self.shared[scheme][level].runs < RUNS;
             let start = best.1;
             if start >= self.levels.len() {
                 return None;

@@ -4,7 +4,7 @@
 //! `work_stealing`.
 
 use super::{Share, Task, TreeWork};
-use crate::machine::{Layout, Machine, Processor, RunError, Seats, Shared, Word};
+use crate::machine::{Activity, Layout, Machine, Processor, RunError, Seats, Shared, Word};
 use crate::scheme::{SettingError, Settings};
 use crossbeam::deque::{Steal, Stealer, Worker};
 use std::sync::atomic::Ordering;
@@ -57,9 +57,11 @@ impl<M: Machine> CrossbeamDeque<M> {
             // ORDERING: AcqRel, as in `work_stealing`.
             idle.fetch_add(1, Ordering::AcqRel);
             loop {
-                cpu.wait_until(&[], || {
-                    // ORDERING: Acquire pairs with the counts.
-                    idle.load(Ordering::Acquire) == count as u64 || victims().any(|v| !v.is_empty())
+                cpu.during(Activity::Idle, || {
+                    cpu.wait_until(&[], || {
+                        // ORDERING: Acquire pairs with the counts.
+                        idle.load(Ordering::Acquire) == count as u64 || victims().any(|v| !v.is_empty())
+                    });
                 });
                 // ORDERING: Acquire, as above.
                 if idle.load(Ordering::Acquire) == count as u64 {

@@ -12,7 +12,7 @@
 //! Settings: `lock`, `layout`, `insert` (`each`, the paper's reading, or `batch`), `capacity`.
 
 use super::{Share, Task, TreeWork};
-use crate::machine::{Layout, Machine, Processor, RunError, Shared, Word};
+use crate::machine::{Activity, Layout, Machine, Processor, RunError, Shared, Word};
 use crate::scheme::{SettingError, Settings};
 use crate::sync::LockedQueue;
 use std::sync::atomic::Ordering;
@@ -99,8 +99,10 @@ impl<M: Machine> GlobalQueue<M> {
                 }
             }
             // ORDERING: Relaxed: hints; the lock decides about tasks.
-            cpu.wait_until(&[length, over], || {
-                over.load(Ordering::Relaxed) != 0 || length.load(Ordering::Relaxed) != 0
+            cpu.during(Activity::Idle, || {
+                cpu.wait_until(&[length, over], || {
+                    over.load(Ordering::Relaxed) != 0 || length.load(Ordering::Relaxed) != 0
+                });
             });
             if over.load(Ordering::Relaxed) != 0 {
                 return None;

@@ -5,6 +5,10 @@
 //! by whichever processor gets it, and each processor gathers what it found; the union is the serial
 //! result, whatever the scheme, the machine and the number of processors.
 //!
+//! On a timeline a scheme shows without doing anything for it: its visits are work, what it waits for with
+//! `wait_until` is waiting, all else is sending. Where it has run dry it says so:
+//! `cpu.during(Activity::Idle, || ...)`, which `sync::Quiescence` does already.
+//!
 //! ```
 //! use apportion::machine::Threads;
 //! use apportion::scheme::tree::{share, work};

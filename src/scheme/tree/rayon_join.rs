@@ -1,6 +1,7 @@
 //! `rayon::join` at every node, on rayon's own threads: what most Rust programs do today.
 //!
-//! The tasks below a node are halved until one is left. Rayon's workers park on their own terms.
+//! The tasks below a node are halved until one is left. Rayon's workers park on their own terms: a timeline
+//! shows the visits, and all that rayon does between them, looking for work and sleeping too, as sending.
 
 use super::{Share, Task, TreeWork};
 use crate::machine::threads::{Thread, pin};
@@ -22,8 +23,8 @@ pub(super) struct RayonJoin<M> {
     machine: PhantomData<fn(M)>,
 }
 
-/// One share a worker. Its lock is free whenever it is taken: a worker visits one task at a time.
-type Shares<F> = Vec<Mutex<Share<F>>>;
+/// One share and one handle a worker. Its lock is free whenever it is taken: a worker visits one task at a time.
+type Shares<F> = Vec<Mutex<(Share<F>, Thread)>>;
 
 impl<M: Machine> RayonJoin<M> {
     pub(super) fn new(machine: &M, processors: usize, settings: &Settings) -> Result<Self, SettingError> {
@@ -33,7 +34,7 @@ impl<M: Machine> RayonJoin<M> {
 
     pub(super) fn run<W: TreeWork>(
         &mut self,
-        _machine: &M,
+        machine: &M,
         work: &W,
     ) -> Result<Vec<Share<W::Found>>, RunError> {
         let pool = match &mut self.pool {
@@ -46,14 +47,15 @@ impl<M: Machine> RayonJoin<M> {
         };
         let count = self.processors;
         let whole = || {
-            let share = || Mutex::new(Share { found: work.found(), visited: 0 });
-            let shares: Shares<W::Found> = (0..count).map(|_| share()).collect();
+            let share = || Share { found: work.found(), visited: 0 };
+            let shares: Shares<W::Found> =
+                (0..count).map(|p| Mutex::new((share(), machine.outside(p, count)))).collect();
             pool.install(|| work.root().into_iter().for_each(|root| down(work, &shares, root)));
             shares
         };
         let shares = catch_unwind(AssertUnwindSafe(whole))
             .map_err(|payload| RunError::Panicked { processor: 0, message: panic_message(&*payload) })?;
-        Ok(shares.into_iter().map(|share| share.into_inner().expect("no visit panicked")).collect())
+        Ok(shares.into_iter().map(|share| share.into_inner().expect("no visit panicked").0).collect())
     }
 }
 
@@ -62,9 +64,9 @@ fn down<W: TreeWork>(work: &W, shares: &Shares<W::Found>, task: W::Task) {
     let mut below = Vec::new();
     {
         let mut share = shares[me].lock().unwrap_or_else(|e| e.into_inner());
+        let (share, cpu) = &mut *share;
         share.visited += 1;
-        let cpu = Thread::outside(me, shares.len());
-        work.visit(task, &mut share.found, &cpu, |task| below.push(task.pack()));
+        work.visit(task, &mut share.found, cpu, |task| below.push(task.pack()));
     }
     split(work, shares, &below);
 }

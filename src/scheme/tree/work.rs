@@ -1,6 +1,6 @@
 //! What a tree scheme shares out.
 
-use crate::machine::Processor;
+use crate::machine::{Activity, Processor};
 
 /// Something small enough to travel through a queue: it packs into 64 bits.
 pub trait Task: Copy + Send + Sync {
@@ -95,8 +95,9 @@ pub trait TreeWork: Sync {
     }
 }
 
-/// Work whose every task passes through a scheme's hands: each visit is billed its bookkeeping. What
-/// is descended on the spot is not.
+/// Work whose every task passes through a scheme's hands: each visit is billed its bookkeeping (what is
+/// descended on the spot is not), and marked on a timeline. Between its tasks a scheme is taken to be
+/// sending, unless it says otherwise.
 pub(super) struct Billed<'a, W>(pub(super) &'a W);
 
 impl<W: TreeWork> TreeWork for Billed<'_, W> {
@@ -114,9 +115,28 @@ impl<W: TreeWork> TreeWork for Billed<'_, W> {
     }
 
     #[inline]
-    fn visit<P: Processor>(&self, task: W::Task, found: &mut W::Found, cpu: &P, emit: impl FnMut(W::Task)) {
+    fn visit<P: Processor>(
+        &self,
+        task: W::Task,
+        found: &mut W::Found,
+        cpu: &P,
+        mut emit: impl FnMut(W::Task),
+    ) {
         cpu.keep_books();
-        self.0.visit(task, found, cpu, emit);
+        let looked_into = cpu.take_up(1);
+        // One visit for both cases: a second one would make a scheme's locals live in memory in the first.
+        self.0.visit(task, found, cpu, |below| {
+            if P::MARKS_WITHIN && looked_into {
+                cpu.enter(Activity::Sending);
+            }
+            emit(below);
+            if P::MARKS_WITHIN && looked_into {
+                cpu.enter(Activity::Working);
+            }
+        });
+        if looked_into {
+            cpu.enter(Activity::Sending);
+        }
     }
 
     #[inline]
@@ -127,7 +147,12 @@ impl<W: TreeWork> TreeWork for Billed<'_, W> {
         cpu: &P,
         stack: &mut Vec<u64>,
     ) -> u64 {
-        self.0.descend(task, found, cpu, stack)
+        let looked_into = cpu.take_up(self.0.size(task));
+        let visited = self.0.descend(task, found, cpu, stack);
+        if looked_into {
+            cpu.enter(Activity::Sending);
+        }
+        visited
     }
 
     #[inline]

@@ -14,7 +14,7 @@
 
 use super::neighbours::neighbours;
 use super::{Share, Task, TreeWork};
-use crate::machine::{Layout, Machine, Processor, RunError, Seats, Shared, Word};
+use crate::machine::{Activity, Layout, Machine, Processor, RunError, Seats, Shared, Word};
 use crate::scheme::{SettingError, Settings};
 use std::sync::atomic::Ordering;
 
@@ -196,9 +196,11 @@ impl<M: Machine> WorkStealing<M> {
         idle.fetch_add(1, Ordering::AcqRel);
         let everybody = count as u64;
         loop {
-            cpu.wait_until(&watched, || {
-                // ORDERING: Acquire pairs with the counts above and below.
-                idle.load(Ordering::Acquire) == everybody || victims().any(|d| !d.is_empty())
+            cpu.during(Activity::Idle, || {
+                cpu.wait_until(&watched, || {
+                    // ORDERING: Acquire pairs with the counts above and below.
+                    idle.load(Ordering::Acquire) == everybody || victims().any(|d| !d.is_empty())
+                });
             });
             // ORDERING: Acquire, as above.
             if idle.load(Ordering::Acquire) == everybody {

@@ -1,7 +1,7 @@
 //! Test-and-set: every try is a write, so every waiter pulls the line over on every try.
 
 use super::Words;
-use crate::machine::{Processor, Word};
+use crate::machine::{Activity, Processor, Word};
 use std::sync::atomic::Ordering;
 
 pub(super) fn words(_processors: usize) -> usize {
@@ -10,8 +10,14 @@ pub(super) fn words(_processors: usize) -> usize {
 
 pub(super) fn acquire<P: Processor>(words: Words<'_, P::Word>, cpu: &P) {
     // ORDERING: Acquire pairs with the Release in `release`.
-    while words.at(0).test_and_set(Ordering::Acquire) {
-        cpu.spin();
+    let is_taken = || words.at(0).test_and_set(Ordering::Acquire);
+    if is_taken() {
+        cpu.during(Activity::Waiting, || {
+            cpu.spin();
+            while is_taken() {
+                cpu.spin();
+            }
+        });
     }
 }
 

@@ -2,6 +2,10 @@
 //!
 //! They stand here and not in `measure`, because the report summarises rows too and sees nothing but this room.
 
+mod shift;
+
+pub use shift::{blocks, shift};
+
 /// How many times the bootstrap draws; the interval's ends move by under 1 % of its width beyond this.
 const DRAWS: usize = 2_000;
 
@@ -14,6 +18,13 @@ pub struct Interval {
     pub low: f64,
     /// 2.5 % of the bootstrap's medians are higher.
     pub high: f64,
+}
+
+impl Interval {
+    /// How far the further end lies from the median, as a share of the median.
+    pub fn spread(&self) -> f64 {
+        (self.high - self.median).max(self.median - self.low) / self.median.abs()
+    }
 }
 
 /// The median; none of no numbers. The mean of the middle two where there is no middle one.
@@ -30,6 +41,29 @@ fn middle(sorted: &[f64]) -> Option<f64> {
         length if length % 2 == 1 => Some(sorted[half]),
         _ => Some(f64::midpoint(sorted[half - 1], sorted[half])),
     }
+}
+
+/// The value below which a share of the numbers lies, between two of them by their distance; none of no numbers.
+pub fn quantile(numbers: &[f64], share: f64) -> Option<f64> {
+    let mut sorted = numbers.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let last = sorted.len().checked_sub(1)?;
+    let place = share.clamp(0.0, 1.0) * last as f64;
+    let (below, above) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
+    Some(below + (above - below) * place.fract())
+}
+
+/// Beyond so many scaled median absolute deviations from the median a number is an outlier.
+pub const OUTLIER: f64 = 3.0;
+
+/// How many of the numbers are outliers: further than [`OUTLIER`] scaled median absolute deviations from the
+/// median. They are to be counted, not dropped. Numbers of which more than half are equal have none.
+pub fn outliers(numbers: &[f64]) -> usize {
+    let Some(median) = median(numbers) else { return 0 };
+    let off: Vec<f64> = numbers.iter().map(|number| (number - median).abs()).collect();
+    // 1.4826: makes the deviation that of the normal distribution with the same spread.
+    let limit = OUTLIER * 1.4826 * self::median(&off).unwrap_or(0.0);
+    off.iter().filter(|off| limit > 0.0 && **off > limit).count()
 }
 
 /// The median with its 95 % percentile bootstrap interval (Efron 1979); none of no numbers.

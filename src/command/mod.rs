@@ -5,6 +5,7 @@ mod compare;
 mod list;
 mod print;
 mod progress;
+mod report;
 mod run;
 mod stress;
 mod table;
@@ -53,6 +54,7 @@ fn act(action: Action) -> Result<ExitCode> {
         Action::List => list::list()?,
         Action::Run(words) => return run::run(&words),
         Action::Table(words) => table::table(&words)?,
+        Action::Report(words) => report::report(&words)?,
         Action::Advise(words) => advise::advise(&words)?,
         Action::Compare(words) => compare::compare(&words)?,
         Action::Scene { scene } => print::line(&inspect::scene(&scene)?)?,

@@ -2,6 +2,7 @@
 
 use super::list::EXPERIMENTS;
 use super::progress::Bar;
+use super::report::write_charts;
 use super::table::RESULTS;
 use super::trace::TraceFile;
 use super::words::{Format, RunWords};
@@ -10,8 +11,8 @@ use anyhow::{Context, Result};
 use apportion::measure::{
     self, Ending, Experiment, Known, MeasureError, Plan, Selection, Shelf, SubjectCache, Tracer, subject,
 };
-use apportion::record::{Host, Meta, RowLog, RunFolder, export_csv, read_rows, run_id, utc_now, write_whole};
-use apportion::report::{self, Table};
+use apportion::record::{Host, Meta, RowLog, RunFolder, export_csv, run_id, utc_now, write_whole};
+use apportion::report::{self, Run, Table};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -171,16 +172,12 @@ impl Prepared {
     /// Draws the charts and makes the table; prints it, and what was written where (also the traces before), unless
     /// it is for a program.
     fn finish(&self, folder: &RunFolder, format: Format, traced: Vec<PathBuf>) -> Result<Table> {
-        let rows = read_rows(&folder.rows())?;
-        let mut table = report::table(&rows, &self.experiment.paper);
+        let run = Run::read(folder)?;
+        let mut table = report::table(&run.rows, &self.experiment.paper);
         table.hold_peaks_to(|machine| Plan::whole_counts(&self.experiment, machine, Host::here().cores));
         let mut written = vec![folder.rows(), folder.csv(), folder.meta()];
-        for chart in report::speedup_charts(&self.experiment.title, &rows, &self.experiment.paper)? {
-            let path = folder.path().join(chart.file_name);
-            write_whole(&path, |out| out.write_all(chart.svg.as_bytes()))?;
-            written.push(path);
-        }
-        let loose = self.selection.until.map(|percent| (percent, report::loose(&rows, percent)));
+        written.extend(write_charts(&run, folder)?);
+        let loose = self.selection.until.map(|percent| (percent, report::loose(&run.rows, percent)));
         written.extend(traced);
         if format == Format::Table {
             print::line(&format!("{}\n\n{}", self.experiment.title, table.text()))?;

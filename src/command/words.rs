@@ -30,6 +30,11 @@ pub(crate) enum Action {
         after_help = "Examples:\n  apportion table cull-large\n  apportion table cull-large --format csv > cull-large.csv"
     )]
     Table(TableWords),
+    /// Draw runs as one HTML page that needs nothing else: charts, tables, where the rows are from.
+    ///
+    /// Without folders: the newest finished run of each experiment in results/, committed reference runs included.
+    #[command(after_help = REPORT_EXAMPLES)]
+    Report(ReportWords),
     /// Tell which scheme to take, on how many processors, for a scene of yours, and why.
     #[command(
         after_help = "Examples:\n  apportion advise --scene assembly.glb\n  apportion advise --scene factory-large --machine e4000 --processors 8 --explain"
@@ -103,6 +108,27 @@ const COMPARE_EXAMPLES: &str = "Examples:
 Each run is cut into blocks of repeats, each block summed up by the lower quartile of its frames' times, and the \
 ratio is the median of all ratios between blocks. All intervals hold at once with 95 %; a verdict needs the whole \
 interval beyond 1 by 2 %, for two runs of one program differ by as much. Simulated cells are exact.";
+
+/// What `report --help` ends with.
+const REPORT_EXAMPLES: &str = "\
+Examples:
+  apportion report                                 all experiments, to results/report.html
+  apportion report --out cull.html results/cull-large/reference
+  apportion report --charts results/tree-work/20260301T120000Z    its SVG and Vega-Lite files anew, too";
+
+/// The words of `report`.
+#[derive(Debug, Args)]
+pub(crate) struct ReportWords {
+    /// The page's file.
+    #[arg(long, value_name = "FILE.html", default_value = "results/report.html")]
+    pub(crate) out: PathBuf,
+    /// Also draw the SVG files and Vega-Lite specifications of each run anew, beside its rows.
+    #[arg(long)]
+    pub(crate) charts: bool,
+    /// Folders of runs.
+    #[arg(value_name = "RUN_DIR")]
+    pub(crate) runs: Vec<PathBuf>,
+}
 
 /// How a table is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

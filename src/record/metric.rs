@@ -9,6 +9,31 @@ pub enum Better {
     Lower,
 }
 
+/// What a number says a method gave up for its speed; never two kinds on one axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AccuracyKind {
+    /// The result itself is another: missed hits, a coarser picture.
+    Answer,
+    /// The same result, for more work: boxes called intersecting that are not, tests a ray.
+    Structure,
+    /// An older result: age in frames.
+    Timeliness,
+}
+
+impl AccuracyKind {
+    /// The kinds, in the order they are shown.
+    pub const ALL: [Self; 3] = [Self::Answer, Self::Structure, Self::Timeliness];
+
+    /// The kind in a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Answer => "answer",
+            Self::Structure => "structure",
+            Self::Timeliness => "timeliness",
+        }
+    }
+}
+
 /// A metric: what a row's number means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Metric {
@@ -20,6 +45,8 @@ pub struct Metric {
     pub better: Better,
     /// What it is, in a sentence.
     pub sentence: &'static str,
+    /// What it says was given up for speed; none where it is no measure of that.
+    pub accuracy: Option<AccuracyKind>,
 }
 
 /// The metric of that name.
@@ -28,7 +55,14 @@ pub fn metric(name: &str) -> Option<&'static Metric> {
 }
 
 const fn declare(name: &'static str, unit: &'static str, better: Better, sentence: &'static str) -> Metric {
-    Metric { name, unit, better, sentence }
+    Metric { name, unit, better, sentence, accuracy: None }
+}
+
+impl Metric {
+    /// The same metric, as one that says what was given up for speed.
+    const fn gives_up(self, kind: AccuracyKind) -> Self {
+        Self { accuracy: Some(kind), ..self }
+    }
 }
 
 /// Every metric there is.
@@ -71,7 +105,8 @@ pub const METRICS: &[Metric] = {
             Lower,
             "Processors that took part in a frame, on average: a scheme may leave some out.",
         ),
-        declare("nodes_visited", "nodes", Lower, "Nodes of the structure the job looked at."),
+        declare("nodes_visited", "nodes", Lower, "Nodes of the structure the job looked at.")
+            .gives_up(AccuracyKind::Structure),
         declare("nodes_visible", "nodes", Higher, "Leaf nodes found visible."),
         declare(
             "lost_time",

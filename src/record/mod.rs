@@ -14,6 +14,7 @@ mod folder;
 mod log;
 mod meta;
 mod metric;
+mod question;
 mod row;
 pub mod statistics;
 mod trace_events;
@@ -25,7 +26,8 @@ pub use figure::PaperFigure;
 pub use folder::RunFolder;
 pub use log::{RowLog, read_rows};
 pub use meta::{Host, Meta};
-pub use metric::{Better, METRICS, Metric, metric};
+pub use metric::{AccuracyKind, Better, METRICS, Metric, metric};
+pub use question::Question;
 pub use row::{CellKey, Row, THREADS, settings_pairs};
 pub use trace_events::{Stretch, TracedFrame, check_trace_place, write_trace};
 pub use whole::write_whole;
@@ -48,6 +50,16 @@ pub enum RecordError {
     /// A line holds something else than a record.
     #[error("{}, line {line}: expected one record in JSON: {message}", path.display())]
     Line {
+        /// The file read.
+        path: PathBuf,
+        /// Its line, from 1.
+        line: usize,
+        /// What the parser said.
+        message: String,
+    },
+    /// A run's `experiment.toml` holds something else than an experiment.
+    #[error("{}, line {line}: {message}", path.display())]
+    Question {
         /// The file read.
         path: PathBuf,
         /// Its line, from 1.

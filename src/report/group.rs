@@ -17,6 +17,8 @@ pub(crate) struct Group {
     /// The common settings, `key=value;key=value`.
     pub(crate) settings: String,
     pub(crate) curves: Vec<Curve>,
+    /// The most repeats of a cell.
+    pub(crate) repeats: usize,
 }
 
 /// One scheme with its own settings.
@@ -33,14 +35,16 @@ pub(crate) struct Curve {
 pub(crate) fn groups(rows: &[Row], metric: &str) -> Vec<Group> {
     let mut values: BTreeMap<(usize, usize, u32), Vec<f64>> = BTreeMap::new();
     let mut groups: Vec<Group> = Vec::new();
-    for row in rows.iter().filter(|row| row.metric == metric && row.frame.is_none()) {
+    // No log holds a number that is not finite; rows made by hand may.
+    let fits = |row: &&Row| row.metric == metric && row.frame.is_none() && row.value.is_finite();
+    for row in rows.iter().filter(fits) {
         let (settings, own) = split(&row.settings, &row.machine);
         let is_group = |group: &Group| {
             group.machine == row.machine && group.scene == row.scene && group.settings == settings
         };
         let group = groups.iter().position(is_group).unwrap_or_else(|| {
             let (machine, scene) = (row.machine.clone(), row.scene.clone());
-            groups.push(Group { machine, scene, settings, curves: Vec::new() });
+            groups.push(Group { machine, scene, settings, curves: Vec::new(), repeats: 0 });
             groups.len() - 1
         });
         let curves = &mut groups[group].curves;
@@ -52,7 +56,13 @@ pub(crate) fn groups(rows: &[Row], metric: &str) -> Vec<Group> {
         values.entry((group, curve, row.processors)).or_default().push(row.value);
     }
     for ((group, curve, processors), values) in values {
-        let point = interval(&values, SEED).expect("an entry has a value");
+        // Draws from equal numbers give that number: most cells of a simulated machine ran once.
+        let point = if values.iter().all(|value| *value == values[0]) {
+            Interval { median: values[0], low: values[0], high: values[0] }
+        } else {
+            interval(&values, SEED).expect("an entry has a value")
+        };
+        groups[group].repeats = groups[group].repeats.max(values.len());
         groups[group].curves[curve].points.insert(processors, point);
     }
     groups
@@ -96,26 +106,51 @@ impl Group {
         parallel.flat_map(|curve| curve.points.keys().copied())
     }
 
+    /// The curve of a scheme with those settings.
+    pub(crate) fn curve(&self, scheme: &str, settings: &str) -> Option<&Curve> {
+        self.curves.iter().find(|curve| curve.scheme == scheme && curve.settings == settings)
+    }
+
     /// A curve a scheme, of its best point at each count of processors ("best topology per point", Paper II sec. 4.2).
     /// Where there is but one parallel scheme its settings are the question, so that each keeps its curve.
-    pub(crate) fn best_curves(&self) -> Vec<Curve> {
+    pub(crate) fn best(&self) -> Vec<Best> {
         let parallel = || self.curves.iter().filter(|curve| curve.scheme != "serial");
-        if parallel().all(|curve| Some(&curve.scheme) == parallel().next().map(|first| &first.scheme)) {
-            return self.curves.clone();
-        }
-        let mut best: Vec<Curve> = Vec::new();
-        for curve in &self.curves {
-            let Some(other) = best.iter_mut().find(|other| other.scheme == curve.scheme) else {
-                best.push(Curve { settings: String::new(), ..curve.clone() });
-                continue;
-            };
-            for (&processors, &point) in &curve.points {
-                let place = other.points.entry(processors).or_insert(point);
-                if point.median > place.median {
-                    *place = point;
+        let one_scheme =
+            parallel().all(|curve| Some(&curve.scheme) == parallel().next().map(|first| &first.scheme));
+        let mut best: Vec<Best> = Vec::new();
+        for (number, curve) in self.curves.iter().enumerate() {
+            let place = best.iter().position(|best| best.scheme == curve.scheme && !one_scheme);
+            let place = place.unwrap_or_else(|| {
+                let settings = if one_scheme { curve.settings.clone() } else { String::new() };
+                let (scheme, choice) = (curve.scheme.clone(), BTreeMap::new());
+                best.push(Best { scheme, settings, choice });
+                best.len() - 1
+            });
+            for (&processors, point) in &curve.points {
+                let chosen = best[place].choice.entry(processors).or_insert(number);
+                if point.median > self.curves[*chosen].points[&processors].median {
+                    *chosen = number;
                 }
             }
         }
         best
+    }
+}
+
+/// A curve as charts show it: at each count of processors the setting that is fastest there.
+#[derive(Clone, Debug)]
+pub(crate) struct Best {
+    pub(crate) scheme: String,
+    /// The scheme's own settings where each keeps its curve; empty where the best is taken.
+    pub(crate) settings: String,
+    /// Processors to the number of the curve chosen.
+    pub(crate) choice: BTreeMap<u32, usize>,
+}
+
+impl Best {
+    /// At that many processors: the curve chosen and its point.
+    pub(crate) fn at<'a>(&self, group: &'a Group, processors: u32) -> Option<(&'a Curve, Interval)> {
+        let curve = &group.curves[*self.choice.get(&processors)?];
+        Some((curve, *curve.points.get(&processors)?))
     }
 }

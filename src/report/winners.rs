@@ -27,7 +27,10 @@ pub(crate) fn winners(groups: &[Group]) -> Option<String> {
     let mut columns = vec![vec!["winner, by how much".to_owned()]];
     columns[0].extend(groups.iter().map(|group| place(group, groups)));
     for &count in &counts {
-        let winners = groups.iter().map(|group| winner(group, count));
+        let winners = groups.iter().map(|group| {
+            let win = win(group, count);
+            win.map_or("-".to_owned(), |win| format!("{} +{:.0} %", win.scheme, 100.0 * win.margin()))
+        });
         columns.push(std::iter::once(format!("P = {count}")).chain(winners).collect());
     }
     Some(blocks(&columns).join("\n"))
@@ -61,21 +64,33 @@ fn place(group: &Group, groups: &[Group]) -> String {
     words.join(" ")
 }
 
-fn winner(group: &Group, count: u32) -> String {
-    let mut ranked = vec![("serial", 1.0)];
-    for curve in group.best_curves().iter().filter(|curve| curve.scheme != "serial") {
-        if let Some(point) = curve.points.get(&count) {
-            let scheme = group.curves.iter().find(|other| other.scheme == curve.scheme);
-            ranked.push((scheme.map_or("", |scheme| &scheme.scheme), point.median));
+/// Who is fastest at a count of processors, and by how much.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Win {
+    pub(crate) scheme: String,
+    pub(crate) speedup: f64,
+    /// The next best, and its speedup.
+    pub(crate) next: (String, f64),
+}
+
+impl Win {
+    /// By how much it beats the next: 0.1 is a tenth faster.
+    pub(crate) fn margin(&self) -> f64 {
+        self.speedup / self.next.1 - 1.0
+    }
+}
+
+/// The winner of a group at a count of processors; none where nobody ran on so many.
+pub(crate) fn win(group: &Group, count: u32) -> Option<Win> {
+    let mut ranked = vec![("serial".to_owned(), 1.0)];
+    for best in group.best().iter().filter(|best| best.scheme != "serial") {
+        if let Some((curve, point)) = best.at(group, count) {
+            ranked.push((curve.scheme.clone(), point.median));
         }
     }
     ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
-    match ranked[..] {
-        [(scheme, best), (_, next), ..] => {
-            format!("{scheme} +{:.0} %", 100.0 * (best / next - 1.0))
-        }
-        _ => "-".to_owned(),
-    }
+    let [(scheme, speedup), next, ..] = &ranked[..] else { return None };
+    Some(Win { scheme: scheme.clone(), speedup: *speedup, next: next.clone() })
 }
 
 #[cfg(test)]

@@ -247,3 +247,28 @@ fn every_help_has_examples() {
         assert!(examples.contains(&format!("  apportion {word}")), "{text}");
     }
 }
+
+#[test]
+fn a_report_needs_a_run_and_links_to_its_files() {
+    let folder = empty();
+    let said = refused(folder.path(), &["report"], 1);
+    assert!(said.contains("no finished run in results: run an experiment first"), "{said}");
+    let said = refused(folder.path(), &["report", "nowhere"], 1);
+    assert!(said.contains("cannot read nowhere"), "{said}");
+    assert!(!folder.path().join("results").exists(), "nothing is written where there is nothing to show");
+    let words =
+        ["run", "cull-small", "--quick", "--machine", "e4000", "--processors", "2", "--scheme", "lock_free"];
+    assert!(apportion(folder.path(), &words).status.success());
+    let output = apportion(folder.path(), &["report", "--out", "pages/a b/report.html"]);
+    assert!(out(&output).contains("wrote pages/a b/report.html: 1 run, "), "{}", out(&output));
+    let page = folder.path().join("pages/a b/report.html");
+    let html = std::fs::read_to_string(&page).expect("the page was written");
+    // Every file it names is there: what `run` writes and what the page promises are the same.
+    let links: Vec<&str> =
+        html.split("href=\"../").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    assert!(links.len() > 8, "{links:?}");
+    for link in links {
+        let file = page.parent().expect("it lies in a folder").join("..").join(link);
+        assert!(file.is_file(), "{link} is not there");
+    }
+}

@@ -6,6 +6,7 @@ mod compare;
 mod experiment;
 mod house_rules;
 mod mock;
+mod page;
 mod record;
 mod report;
 mod run;

@@ -1,0 +1,198 @@
+//! Tables: the paper's figures beside ours, and the numbers behind a figure.
+
+use crate::report::Run;
+use crate::report::escape::attribute;
+use crate::report::figure::{
+    ACTIVITIES, Axis, Bars, Body, Field, Figure, Plot, Scale, Style, number, shares,
+};
+use crate::report::table::table;
+use std::fmt::Write;
+
+/// Paper, simulated, measured and the errors, of the figures the paper printed; nothing where it printed none.
+pub(super) fn paper(run: &Run) -> String {
+    let table = table(&run.rows, &run.question.paper);
+    let figures: Vec<_> = table.lines.iter().filter(|line| line.figure.is_some()).collect();
+    if figures.is_empty() {
+        return String::new();
+    }
+    let mut html = String::from(
+        "<h3>Paper, simulated, measured</h3>\n<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Paper, \
+         simulated and measured\"><table class=\"paper\"><thead><tr>",
+    );
+    let head = ["Figure", "Scheme", "Settings", "Scene", "Machine", "P", "Metric"];
+    let numbers = ["Paper", "Simulated", "Error", "Measured", "Error"];
+    head.iter().for_each(|word| html.push_str(&format!("<th scope=\"col\">{word}")));
+    numbers.iter().for_each(|word| html.push_str(&format!("<th scope=\"col\" class=\"n\">{word}")));
+    html.push_str("<tbody>\n");
+    let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+    for line in figures {
+        let processors = line.processors.map_or("peak".to_owned(), |count| count.to_string());
+        let metric =
+            if line.unit == "x" { line.metric.clone() } else { format!("{}, {}", line.metric, line.unit) };
+        let figure = line.figure.as_deref().unwrap_or_default();
+        let _ = write!(html, "<tr><th scope=\"row\">{}", attribute(figure));
+        for word in
+            [&line.scheme, &line.settings.replace(';', " "), &line.scene, &line.machine, &processors, &metric]
+        {
+            let _ = write!(html, "<td>{}", attribute(word));
+        }
+        let plain = |value| finite(value).map_or("-".to_owned(), number);
+        let error =
+            |value| finite(value).map_or("-".to_owned(), |error: f64| format!("{:+.0} %", 100.0 * error));
+        for word in [
+            plain(line.paper),
+            plain(line.simulated),
+            error(line.error_simulated),
+            plain(line.measured),
+            error(line.error_measured),
+        ] {
+            let _ = write!(html, "<td class=\"n\">{word}");
+        }
+        html.push('\n');
+    }
+    html + "</table></div>\n"
+}
+
+/// The numbers behind a figure.
+pub(super) fn numbers(figure: &Figure) -> String {
+    let mut html = format!(
+        "<details><summary>Table: {}</summary><div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\">\
+         <table>\n",
+        attribute(&figure.title)
+    );
+    for panel in &figure.panels {
+        let _ =
+            write!(html, "<tbody><tr><th scope=\"rowgroup\" colspan=\"99\">{}", attribute(&panel.heading));
+        match &panel.body {
+            Body::Plot(plot) if plot.series.iter().any(|series| series.style == Style::Scatter) => {
+                scatter(&mut html, plot, figure);
+            }
+            Body::Plot(plot) => curves(&mut html, plot, figure),
+            Body::Field(field) => cells(&mut html, field, figure),
+            Body::Bars(bars) => activities(&mut html, bars),
+        }
+        html.push('\n');
+    }
+    html + "</table></div></details>\n"
+}
+
+fn name(axis: &Axis, at: f64) -> String {
+    match &axis.scale {
+        Scale::Names(names) => names.get(at.round() as usize).cloned().unwrap_or_default(),
+        _ => number(at),
+    }
+}
+
+fn title(axis: &Axis) -> String {
+    let unit = if axis.unit.is_empty() { String::new() } else { format!(", {}", axis.unit) };
+    attribute(&format!("{}{unit}", axis.name))
+}
+
+/// A line a curve, a column a place on the horizontal axis; papers' points stand in lines of their own.
+fn curves(html: &mut String, plot: &Plot, figure: &Figure) {
+    let mut places: Vec<f64> = plot
+        .series
+        .iter()
+        .filter(|s| s.entry.is_some())
+        .flat_map(|s| &s.points)
+        .filter_map(|p| p.x)
+        .collect();
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    let _ = write!(html, "<tr><th scope=\"col\">{} by {}", title(&plot.y), attribute(&plot.x.name));
+    for &at in &places {
+        let _ = write!(html, "<th scope=\"col\" class=\"n\">{}", attribute(&name(&plot.x, at)));
+    }
+    for series in &plot.series {
+        let Some(entry) = series.entry else { continue };
+        let label = &figure.legend[entry].label;
+        let words = match (&series.style, series.points.first()) {
+            (Style::Paper, Some(point)) if point.x.is_none() => {
+                format!("{label}, paper ({}): peak {}", point.note, number(point.y))
+            }
+            (Style::Paper, Some(point)) => format!("{label}, paper ({})", point.note),
+            _ => label.clone(),
+        };
+        let _ = write!(html, "<tr><th scope=\"row\">{}", attribute(&words));
+        for at in &places {
+            let point = series.points.iter().find(|point| point.x == Some(*at));
+            let _ = match point {
+                None => write!(html, "<td>"),
+                Some(point) if point.high > point.low => write!(
+                    html,
+                    "<td class=\"n\">{} <small>[{}, {}]</small>",
+                    number(point.y),
+                    number(point.low),
+                    number(point.high)
+                ),
+                Some(point) => write!(html, "<td class=\"n\">{}", number(point.y)),
+            };
+        }
+    }
+}
+
+/// A line a point; those on the front are marked.
+fn scatter(html: &mut String, plot: &Plot, figure: &Figure) {
+    let _ = write!(
+        html,
+        "<tr><th scope=\"col\">scheme<th scope=\"col\">settings<th scope=\"col\" class=\"n\">{}<th scope=\"col\" \
+         class=\"n\">{}<th scope=\"col\">on the front",
+        title(&plot.x),
+        title(&plot.y)
+    );
+    let front =
+        plot.series.iter().filter(|series| series.style == Style::Front).flat_map(|series| &series.points);
+    let front: Vec<_> = front.collect();
+    for series in &plot.series {
+        let Some(entry) = series.entry else { continue };
+        for point in &series.points {
+            let best =
+                front.iter().any(|other| (other.x, other.y, &other.note) == (point.x, point.y, &point.note));
+            let _ = write!(
+                html,
+                "<tr><th scope=\"row\">{}<td>{}<td class=\"n\">{}<td class=\"n\">{}<td>{}",
+                attribute(&figure.legend[entry].label),
+                attribute(&point.note),
+                number(point.x.unwrap_or_default()),
+                number(point.y),
+                if best { "yes" } else { "" }
+            );
+        }
+    }
+}
+
+fn cells(html: &mut String, field: &Field, figure: &Figure) {
+    let _ = write!(
+        html,
+        "<tr><th scope=\"col\">{} by {}",
+        attribute(&field.lines.0),
+        attribute(&field.columns.0)
+    );
+    for column in &field.columns.1 {
+        let _ = write!(html, "<th scope=\"col\">{}", attribute(column));
+    }
+    for (line, value) in field.lines.1.iter().enumerate() {
+        let _ = write!(html, "<tr><th scope=\"row\">{}", attribute(value));
+        for column in 0..field.columns.1.len() {
+            let cell = field.cells.iter().find(|cell| (cell.line, cell.column) == (line, column));
+            let words = cell.map_or(String::new(), |cell| {
+                let note = attribute(&cell.note);
+                format!(
+                    "{} {}<br><small>{note}</small>",
+                    attribute(&figure.legend[cell.entry].label),
+                    cell.text
+                )
+            });
+            let _ = write!(html, "<td>{words}");
+        }
+    }
+}
+
+fn activities(html: &mut String, bars: &Bars) {
+    html.push_str(
+        "<tr><th scope=\"col\">activity<th scope=\"col\" class=\"n\">share of the processors' time, %",
+    );
+    for ((name, _), share) in ACTIVITIES.iter().zip(shares(bars)) {
+        let _ = write!(html, "<tr><th scope=\"row\">{name}<td class=\"n\">{}", number(100.0 * share));
+    }
+}

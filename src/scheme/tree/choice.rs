@@ -11,6 +11,8 @@
 //! better than its line says the fewer runs it has had of late, so that near rivals keep being compared.
 //! Each doubling of the processors has to bring 2 %: "model no more than a scene needs".
 
+use std::ops::ControlFlow;
+
 /// The schemes tried, first the one with the fewest bad cases.
 pub(super) const SCHEMES: [&str; 3] = ["work_stealing", "lock_free", "receiver_initiated"];
 
@@ -20,11 +22,15 @@ const RUNS: u32 = 2;
 const FIRST: f64 = 0.25;
 /// Less than the weight of two runs.
 const TWICE: f64 = 1.2;
+/// Weight of a way that shares from which on it is known well.
+const SETTLED: f64 = 8.0;
 /// What remains of a run's weight when the way has had another, and when any way has had one.
 const FORGET: f64 = 0.97;
-const AGE: f64 = 0.9995;
+const AGE: f64 = 0.9998;
 /// After runs of weight w a way may prove `DOUBT` / sqrt(w) better than its line says.
 const DOUBT: f64 = 0.2;
+/// How much a belief about the start counts beside one run at another size.
+const BELIEF: f64 = 0.3;
 /// Ways this much slower than the best one are no reason to look further in their direction.
 const NEAR: f64 = 1.2;
 /// With two processors slower than one by this, sharing is hopeless.
@@ -96,7 +102,7 @@ impl Line {
         }
         let (x, y) = (self.x / self.weight, self.y / self.weight);
         let (spread, tilt) = (self.xx / self.weight - x * x, self.xy / self.weight - x * y);
-        let belief = 0.01 * x * x;
+        let belief = BELIEF * x * x / self.weight;
         let with_start = |believed: f64| {
             let start = ((tilt + belief * believed) / (spread + belief)).max(0.0);
             let each = y - start * x;
@@ -158,17 +164,21 @@ impl Choice {
         self.tour(tasks).unwrap_or_else(|| self.most_promising(tasks))
     }
 
-    /// The most tasks, `tasks` times a power of two, up to which one processor is the way to take; none where
-    /// it is not, or not known well enough.
-    pub(super) fn serial_up_to(&self, tasks: u64) -> Option<u64> {
-        let mut up_to = tasks.max(1);
-        if self.serial.weight < TWICE || self.next(up_to) != Way::Serial {
-            return None;
+    /// Whether a way is known well enough to be taken some times without looking at the clock.
+    pub(super) fn is_settled(&self, way: Way) -> bool {
+        match way {
+            Way::Serial => self.serial.weight >= TWICE,
+            Way::Shared { scheme, level } => self.shared[scheme][level].weight >= SETTLED,
         }
-        while up_to < 1 << 40 && self.next(2 * up_to) == Way::Serial {
-            up_to *= 2;
+    }
+
+    /// The most tasks, `tasks` times a power of two, up to which one processor is the way to take.
+    pub(super) fn serial_up_to(&self, tasks: u64) -> u64 {
+        let mut up_to = tasks;
+        while up_to < 1 << 40 && self.next(2 * up_to.max(1)) == Way::Serial {
+            up_to = 2 * up_to.max(1);
         }
-        Some(up_to)
+        up_to
     }
 
     fn most_promising(&self, tasks: f64) -> Way {
@@ -211,20 +221,26 @@ impl Choice {
                 continue;
             }
             let mut peak = (ticks(start), start);
-            let up = (start + 1..self.levels.len()).collect::<Vec<_>>();
-            let down = (0..start).rev().collect::<Vec<_>>();
-            for side in [up, down] {
-                for level in side {
-                    if is_new(level) {
-                        return Some(at(level));
-                    }
-                    if ticks(level) > NEAR * peak.0 {
-                        break;
-                    }
-                    if ticks(level) < peak.0 {
-                        peak = (ticks(level), level);
-                    }
+            // The first level on the way up or down that is new, as long as those before it are near the peak.
+            let climb = |peak: &mut (f64, usize), level: usize| {
+                if is_new(level) {
+                    return ControlFlow::Break(Some(at(level)));
                 }
+                if ticks(level) > NEAR * peak.0 {
+                    return ControlFlow::Break(None);
+                }
+                if ticks(level) < peak.0 {
+                    *peak = (ticks(level), level);
+                }
+                ControlFlow::Continue(())
+            };
+            let up = (start + 1..self.levels.len()).try_for_each(|level| climb(&mut peak, level));
+            if let ControlFlow::Break(Some(new)) = up {
+                return Some(new);
+            }
+            let down = (0..start).rev().try_for_each(|level| climb(&mut peak, level));
+            if let ControlFlow::Break(Some(new)) = down {
+                return Some(new);
             }
             if peak.0 < best.0 {
                 best = peak;
@@ -340,15 +356,16 @@ mod tests {
     #[test]
     fn serial_up_to_a_size_is_serial() {
         let mut choice = Choice::new(vec![2]);
-        assert_eq!(choice.serial_up_to(10), None);
+        assert!(!choice.is_settled(Way::Serial));
         for _ in 0..3 {
             choice.ran(Way::Serial, 10, 200);
         }
-        assert_eq!(choice.serial_up_to(10), None, "the tour is next");
+        assert!(choice.is_settled(Way::Serial));
         for scheme in (0..SCHEMES.len()).chain(0..SCHEMES.len()) {
             choice.ran(Way::Shared { scheme, level: 0 }, 10, 5_000);
         }
-        let up_to = choice.serial_up_to(10).unwrap();
+        assert_eq!(choice.next(10), Way::Serial);
+        let up_to = choice.serial_up_to(10);
         assert!((80..1_000).contains(&up_to), "{up_to}");
     }
 }

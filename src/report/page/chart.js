@@ -59,7 +59,9 @@ class Chart {
     const axis = this[which];
     if (axis.kind === "names" || axis.kind === kind) return;
     axis.kind = kind;
-    if (kind === "log") {
+    if (kind === this.first[which].kind && !this.zoomed) {
+      Object.assign(axis, this.first[which]);
+    } else if (kind === "log") {
       const least = this.least(which === "x" ? "x" : "low");
       if (!Number.isFinite(least)) axis.kind = "even";
       else if (axis.low <= 0 || which === "x") axis.low = Math.min(least, axis.high / 2) / 1.15;

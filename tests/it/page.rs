@@ -116,6 +116,10 @@ fn a_page_holds_a_figure_of_every_kind() {
     assert!(html.contains("of 36 cells 2 are on the front"), "{}", said(&html, "accuracy-structure"));
     assert!(said(&html, "speedup").contains("lock_free"), "{}", said(&html, "speedup"));
     assert!(said(&html, "timeline").contains("62.5 % working"), "{}", said(&html, "timeline"));
+    // One repeat on threads tells nothing apart.
+    for words in ["How sure the measured speedups are", "it takes 6 repeats"] {
+        assert!(html.contains(words), "no {words}");
+    }
     for words in ["Fig. &lt;1&gt;", "<dt>Seed<dd>7", "commit not known", "made%20up/run/rows.csv"] {
         assert!(html.contains(words), "no {words}");
     }

@@ -1,10 +1,11 @@
 //! One run: what it asked, the paper's table, its figures, where it was made.
 
 use super::figure;
-use super::tables::paper;
+use super::tables::{doubts, paper};
 use crate::record::settings_pairs;
 use crate::report::escape::{attribute, link};
 use crate::report::figure::Figure;
+use crate::report::table::table;
 use crate::report::{ReportError, Run};
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -22,7 +23,9 @@ impl Section<'_> {
         let mut html = format!("<section id=\"{}\" class=\"run\">\n", self.id);
         let _ = writeln!(html, "<h2>{}</h2>", attribute(&self.run.question.title));
         html.push_str(&self.introduction());
-        html.push_str(&paper(self.run));
+        let table = table(&self.run.rows, &self.run.question.paper);
+        html.push_str(&paper(&table));
+        html.push_str(&doubts(&table));
         for figure in &self.figures {
             html.push_str(&figure::html(&self.id, &self.run.link, figure)?);
         }

@@ -1,16 +1,14 @@
 //! Tables: the paper's figures beside ours, and the numbers behind a figure.
 
-use crate::report::Run;
+use crate::report::Table;
 use crate::report::escape::attribute;
 use crate::report::figure::{
     ACTIVITIES, Axis, Bars, Body, Field, Figure, Plot, Scale, Style, number, shares,
 };
-use crate::report::table::table;
 use std::fmt::Write;
 
 /// Paper, simulated, measured and the errors, of the figures the paper printed; nothing where it printed none.
-pub(super) fn paper(run: &Run) -> String {
-    let table = table(&run.rows, &run.question.paper);
+pub(super) fn paper(table: &Table) -> String {
     let figures: Vec<_> = table.lines.iter().filter(|line| line.figure.is_some()).collect();
     if figures.is_empty() {
         return String::new();
@@ -51,6 +49,21 @@ pub(super) fn paper(run: &Run) -> String {
         html.push('\n');
     }
     html + "</table></div>\n"
+}
+
+/// What the measured numbers cannot tell apart, what was far out, and how much of a core was lost to others;
+/// nothing where nothing was measured.
+pub(super) fn doubts(table: &Table) -> String {
+    let all = table.groups.iter().zip(&table.doubts).filter(|(_, doubts)| !doubts.is_empty());
+    let items = all.map(|(group, doubts)| {
+        let place = format!("{}, {} {}", group.machine, group.scene, group.settings.replace(';', " "));
+        format!("<li><strong>{}</strong>: {}\n", attribute(place.trim()), attribute(&doubts.join("; ")))
+    });
+    let items = items.collect::<String>();
+    if items.is_empty() {
+        return items;
+    }
+    format!("<details><summary>How sure the measured speedups are</summary><ul>\n{items}</ul></details>\n")
 }
 
 /// The numbers behind a figure.

@@ -288,6 +288,16 @@ fn a_large_tree() {
     check_all(&e4000(), 13, 32, &tree, 1);
 }
 
+/// Depth costs no scheme its stack: a chain, and a chain with a leaf beside each of its nodes.
+#[test]
+fn trees_as_deep_as_they_have_nodes() {
+    let team = team();
+    for width in [1, 2] {
+        let tree = Tree::of((1..60_000_u32).map(|node| (node - 1) / width * width));
+        check_all(&*team, team.most_processors(), 4, &tree, 3);
+    }
+}
+
 #[test]
 fn a_thousand_processors() {
     check_all(&e4000(), 1024, 1, &Tree::of((1..300).map(|node| (node - 1) / 3)), 1);

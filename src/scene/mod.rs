@@ -18,5 +18,5 @@ pub use error::SceneError;
 pub use formats::{FORMATS, Format, load};
 pub use generate::{Aisles, GENERATORS, Generator, by_name};
 pub use graph::{Mesh, Node, Scene};
-pub use path::CameraPath;
+pub use path::{CameraPath, PATHS, PathKind, Waypoint};
 pub use random::SplitMix64;

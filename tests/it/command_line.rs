@@ -116,6 +116,11 @@ fn a_setting_that_is_off_names_file_and_key() {
         ("\"lock_free.frobs\" = 1", "scheme `lock_free` has no setting `frobs`"),
         ("\"e4000.memory\" = 0.5", "setting `e4000.memory`: machine `e4000`"),
         ("\"machine.memry\" = 5", "no constant `memry`"),
+        (
+            "\"scene.path\" = \"spin\"",
+            "setting `scene.path` is `spin`, expected one of: walk, both, rotation",
+        ),
+        ("\"scene.pth\" = \"walk\"", "no setting `scene.pth`; near ones: path"),
     ] {
         let text = small.replace("[settings]\n", &format!("[settings]\n{setting}\n"));
         // With the byte order mark some editors begin a file with.
@@ -271,4 +276,27 @@ fn a_report_needs_a_run_and_links_to_its_files() {
         let file = page.parent().expect("it lies in a folder").join("..").join(link);
         assert!(file.is_file(), "{link} is not there");
     }
+}
+
+#[test]
+fn an_experiment_can_ask_for_every_kind_of_camera_path() {
+    let folder = empty();
+    let experiments = folder.path().join("experiments");
+    std::fs::create_dir(&experiments).expect("it is made");
+    let kinds: Vec<&str> = apportion::scene::PATHS.iter().map(|kind| kind.name).collect();
+    let text = format!(
+        "title = \"Paths\"\njob = \"cull\"\nscene = \"factory-small\"\nframes = 30\nquick_frames = 5\nrepeats = 1\n\
+         machines = [\"threads\"]\nprocessors = {{ threads = \"1\" }}\nschemes = [\"serial\"]\n\
+         [sweep]\n\"scene.path\" = {kinds:?}\n"
+    );
+    std::fs::write(experiments.join("paths.toml"), text).expect("it is written");
+    let output = apportion(folder.path(), &["run", "paths", "--format", "csv"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    let csv = out(&output);
+    for kind in kinds {
+        assert!(csv.contains(&format!("scene.path={kind},")), "no rows of {kind}: {csv}");
+    }
+    let said = refused(folder.path(), &["run", "paths", "--path", "walk.csv"], 2);
+    assert!(said.contains("sets `scene.path`: it takes no --path walk.csv"), "{said}");
 }

@@ -11,7 +11,7 @@ use crate::machine::simulated::{Model, ModelError};
 use crate::machine::threads::TeamSettings;
 use crate::machine::{Machine, Simulated, Threads};
 use crate::record::THREADS;
-use crate::scene::{self, CameraPath};
+use crate::scene::{self, CameraPath, PATHS, Scene};
 use crate::scheme::tree::SCHEMES;
 use crate::structure::{AabbTree, SkipTree};
 use std::collections::HashMap;
@@ -121,24 +121,32 @@ impl SubjectCache {
         self.models.insert(name.to_owned(), model);
     }
 
-    fn stage(&mut self, name: &str, options: &Options) -> Result<Rc<Stage>, MeasureError> {
-        let key = format!("{name} {options:?}");
+    /// The stage of a cell. Settings: `scene.path`, the kind of camera path, one of [`PATHS`].
+    fn stage(&mut self, cell: &Cell, options: &Options) -> Result<Rc<Stage>, MeasureError> {
+        let name = &cell.scene;
+        let settings = settings::of_scene(cell)?;
+        let key = format!("{name} {settings:?} {options:?}");
         if let Some(stage) = self.scenes.get(&key) {
             return Ok(stage.clone());
         }
         let scene = scene(name)?;
         let path = match &options.path {
+            Some(file) if settings.contains_key("path") => {
+                let message =
+                    format!("the experiment sets `scene.path`: it takes no --path {}", file.display());
+                return Err(MeasureError::Words(message));
+            }
             Some(file) => {
                 let size = scene.bounds().size().length().max(1e-3);
                 let path = CameraPath::read_csv(file, NEAR_SHARE * size, FAR_SHARE * size).map_err(failed)?;
                 first_frames(path, file, options.path_frames)?
             }
-            None => CameraPath::for_scene(&scene, options.frames as usize, options.seed),
+            None => made_path(&scene, settings.get("path"), options)?,
         };
         if path.frames.is_empty() {
             return Err(MeasureError::Failed(match &options.path {
                 Some(file) => format!("{}: the camera path has no frames", file.display()),
-                None => format!("scene `{name}`: nothing in it that a camera path could lead past"),
+                None => format!("scene `{name}`: nothing in it that such a camera path could lead past"),
             }));
         }
         let tree = SkipTree::build(&AabbTree::build(&scene));
@@ -157,6 +165,17 @@ impl SubjectCache {
         self.teams.insert(processors, team.clone());
         Ok(team)
     }
+}
+
+/// A path of the kind asked for, or of the scene's own.
+fn made_path(scene: &Scene, kind: Option<&String>, options: &Options) -> Result<CameraPath, MeasureError> {
+    let frames = options.frames as usize;
+    let Some(kind) = kind else { return Ok(CameraPath::for_scene(scene, frames, options.seed)) };
+    let known = PATHS.iter().find(|known| known.name == kind).ok_or_else(|| {
+        let words = PATHS.iter().map(|known| known.name).collect::<Vec<_>>().join(", ");
+        MeasureError::Setting(format!("setting `scene.path` is `{kind}`, expected one of: {words}"))
+    })?;
+    Ok(known.make(scene, frames, options.seed))
 }
 
 /// The frames asked for of a recorded path.
@@ -180,7 +199,7 @@ const SPIN: Duration = Duration::from_millis(20);
 ///
 /// # Errors
 /// There is none of that name; the file cannot be read or is not what it should be.
-pub(super) fn scene(name: &str) -> Result<scene::Scene, MeasureError> {
+pub(super) fn scene(name: &str) -> Result<Scene, MeasureError> {
     if name.contains(['.', '/', '\\']) {
         scene::load(name).map_err(failed)
     } else {

@@ -99,6 +99,24 @@ fn part<'a>(cell: &'a Cell, prefix: &str) -> impl Iterator<Item = (String, Strin
         .filter_map(move |(key, value)| Some((key.strip_prefix(&prefix)?.to_owned(), value.to_string())))
 }
 
+/// What can be set about a cell's scene.
+const OF_THE_SCENE: [&str; 1] = ["path"];
+
+/// The settings `scene.*` of a cell, by their bare names.
+///
+/// # Errors
+/// One that nobody asked for.
+pub(super) fn of_scene(cell: &Cell) -> Result<BTreeMap<String, String>, MeasureError> {
+    let settings: BTreeMap<String, String> = part(cell, "scene.").collect();
+    match settings.keys().find(|key| !OF_THE_SCENE.contains(&key.as_str())) {
+        None => Ok(settings),
+        Some(key) => {
+            let near = near(key, OF_THE_SCENE);
+            Err(MeasureError::Setting(format!("there is no setting `scene.{key}`{near}")))
+        }
+    }
+}
+
 /// The settings of a cell's scheme, by their bare names: `scheme.*` for all that share (the serial one has
 /// nothing to set there), its own name's over them.
 pub(super) fn of_scheme(cell: &Cell) -> BTreeMap<String, String> {

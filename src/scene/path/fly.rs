@@ -1,12 +1,18 @@
 //! A flight through any scene.
 
-use std::f64::consts::TAU;
-
 use glam::Vec3;
 
 use super::super::SplitMix64;
-use super::{CameraPath, LENS};
-use crate::geometry::{Aabb, Camera};
+use super::waves::Waves;
+use super::{CameraPath, PathKind, looking};
+use crate::geometry::Aabb;
+
+/// [`CameraPath::fly_through`] over a scene's bounds.
+pub(super) const FLY: PathKind = PathKind {
+    name: "fly",
+    about: "a flight round and round within the bounds, looking ahead",
+    make: |scene, frames, seed| CameraPath::fly_through(&scene.bounds(), frames, seed),
+};
 
 impl CameraPath {
     /// A flight through a box: round and round within it on smooth, seeded waves, looking ahead along
@@ -14,27 +20,11 @@ impl CameraPath {
     /// sec. 4. 60 degrees up and down, 4:3; the depth range is from a thousandth of the box's diagonal
     /// to all of it. No frames for an empty box or one that overflows.
     pub fn fly_through(bounds: &Aabb, frames: usize, seed: u64) -> Self {
-        let diagonal = bounds.size().length();
-        if bounds.is_empty() || !diagonal.is_finite() {
-            return Self::default();
-        }
-        // A single point is flown past at a distance of the order of a metre.
-        let diagonal = if diagonal > 0.0 { diagonal } else { 1.0 };
-        let mut random = SplitMix64::new(seed);
-        // For each axis: where on its wave it begins, and how many waves it makes on a flight of 1000
-        // frames. Different counts, so that the figure closes late.
-        let waves = [2.0, 3.0, 5.0].map(|turns| (random.between(0.0, TAU), turns * random.between(0.8, 1.2)));
-        let at = |frame: f64| {
-            let share =
-                Vec3::from(waves.map(|(start, turns)| (start + turns * TAU * frame / 1000.0).sin() as f32));
-            bounds.centre() + share * (bounds.size().max(Vec3::splat(diagonal * 0.05)) * 0.4)
-        };
+        let Some(waves) = Waves::within(bounds, &mut SplitMix64::new(seed)) else { return Self::default() };
+        let (near, far) = waves.depth();
         let cameras = (0..frames).filter_map(|frame| {
-            let eye = at(frame as f64);
-            let look = at(frame as f64 + 25.0) - Vec3::Y * (diagonal * 0.02);
-            [Vec3::Y, Vec3::Z]
-                .into_iter()
-                .find_map(|up| Camera::look_at(eye, look, up, LENS, diagonal * 1e-3, diagonal).ok())
+            let look = waves.at(frame as f64 + 25.0) - Vec3::Y * (waves.diagonal * 0.02);
+            looking(waves.at(frame as f64), look, near, far).ok()
         });
         Self { frames: cameras.collect() }
     }

@@ -4,9 +4,19 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, Vec3};
 
-use super::super::{Aisles, SplitMix64};
-use super::{CameraPath, LENS};
+use super::super::{Aisles, GENERATORS, SplitMix64};
+use super::{CameraPath, LENS, PathKind};
 use crate::geometry::Camera;
+
+/// [`CameraPath::walk`] in a generated scene; only those have aisles.
+pub(super) const WALK: PathKind = PathKind {
+    name: "walk",
+    about: "a person walking along the aisles of a generated scene (Paper I sec. 4, path 1)",
+    make: |scene, frames, seed| {
+        let generator = GENERATORS.iter().find(|generator| generator.name == scene.name);
+        generator.map_or_else(CameraPath::default, |g| CameraPath::walk(&g.aisles(), frames, seed))
+    },
+};
 
 /// Seconds from frame to frame.
 const STEP: f64 = 0.1;

@@ -6,8 +6,7 @@ use super::oracle::Hexahedron;
 use super::{Camera, PLANE_COUNT, Plane};
 
 /// One plane as the kernels read it: relative to the eye, with the rounding of its own distance term
-/// taken in advance, and with the sign field of its normal (Paper I sec. 3.1 and, for computing the
-/// field once a frame, sec. 4).
+/// taken in advance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct KernelPlane {
     pub(super) normal: Vec3,
@@ -15,13 +14,13 @@ pub(super) struct KernelPlane {
     pub(super) low: f32,
     /// Distance term plus what rounding may have taken from it: for claims of "inside".
     pub(super) high: f32,
-    /// Bit `i` is set when the normal is negative on axis `i`.
-    pub(super) signs: u8,
 }
 
 /// What a camera sees: a truncated pyramid, brought to world space once a frame (Paper I sec. 3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frustum {
+    /// The camera it is the view of.
+    pub camera: Camera,
     /// The planes in the order left, right, near, far, up, down; unit normals, pointing out.
     pub planes: [Plane; PLANE_COUNT],
     /// The corners, in metres: bit 0 of the index is right, bit 1 is top, bit 2 is far.
@@ -52,7 +51,11 @@ impl Frustum {
             .iter()
             .map(|(normal, d)| -(normal.dot(exact.centre()) + d))
             .fold(f64::INFINITY, f64::min);
+        let mut kernel = exact.planes.map(|(normal, d)| KernelPlane::new(normal, d));
+        // They are parallel; the kernels that test them as a pair need it to the last bit.
+        kernel[3].normal = -kernel[2].normal;
         Self {
+            camera: *camera,
             planes: exact
                 .planes
                 .map(|(normal, d)| Plane { normal: normal.as_vec3(), d: (d - normal.dot(eye)) as f32 }),
@@ -63,7 +66,7 @@ impl Frustum {
             symmetric: camera.lens.is_symmetric(),
             eye: camera.eye,
             middle_depth: camera.forward.as_dvec3().dot(exact.centre()) as f32,
-            kernel: exact.planes.map(|(normal, d)| KernelPlane::new(normal, d)),
+            kernel,
         }
     }
 }
@@ -71,13 +74,7 @@ impl Frustum {
 impl KernelPlane {
     fn new(normal: DVec3, d: f64) -> Self {
         let slack = d.abs() * f64::from(super::culling::ROUNDING);
-        let bit = |axis: usize| u8::from(normal[axis].is_sign_negative()) << axis;
-        Self {
-            normal: normal.as_vec3(),
-            low: (d - slack) as f32,
-            high: (d + slack) as f32,
-            signs: bit(0) | bit(1) | bit(2),
-        }
+        Self { normal: normal.as_vec3(), low: (d - slack) as f32, high: (d + slack) as f32 }
     }
 }
 

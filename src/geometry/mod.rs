@@ -8,8 +8,10 @@ pub mod culling;
 mod frustum;
 pub mod oracle;
 mod plane;
+pub mod volume;
 
 pub use aabb::Aabb;
 pub use camera::{Camera, CameraError, Lens};
 pub use frustum::Frustum;
 pub use plane::{PLANE_COUNT, Plane};
+pub use volume::{KDop, Obb, Sphere, Volume};

@@ -47,6 +47,8 @@ pub struct Metric {
     pub sentence: &'static str,
     /// What it says was given up for speed; none where it is no measure of that.
     pub accuracy: Option<AccuracyKind>,
+    /// It counts by how much the answer is larger than it need be: answers of any size can be compared by it.
+    pub counts_surplus: bool,
 }
 
 /// The metric of that name.
@@ -55,13 +57,18 @@ pub fn metric(name: &str) -> Option<&'static Metric> {
 }
 
 const fn declare(name: &'static str, unit: &'static str, better: Better, sentence: &'static str) -> Metric {
-    Metric { name, unit, better, sentence, accuracy: None }
+    Metric { name, unit, better, sentence, accuracy: None, counts_surplus: false }
 }
 
 impl Metric {
     /// The same metric, as one that says what was given up for speed.
     const fn gives_up(self, kind: AccuracyKind) -> Self {
         Self { accuracy: Some(kind), ..self }
+    }
+
+    /// The same metric, as one that counts what an answer holds too much, which costs work later on.
+    const fn surplus(self) -> Self {
+        Self { counts_surplus: true, ..self.gives_up(AccuracyKind::Structure) }
     }
 }
 
@@ -107,6 +114,42 @@ pub const METRICS: &[Metric] = {
         ),
         declare("nodes_visited", "nodes", Lower, "Nodes of the structure the job looked at.")
             .gives_up(AccuracyKind::Structure),
+        declare("time_per_box", "ns", Lower, "Total time over all volumes looked at."),
+        declare(
+            "speedup_over_baseline",
+            "x",
+            Higher,
+            "Time of the baseline's test over this cell's, serial, frames taken in turn.",
+        ),
+        declare(
+            "falsely_intersecting",
+            "volumes",
+            Lower,
+            "Volumes a frame that were called intersecting, but are outside by the exact test.",
+        )
+        .surplus(),
+        declare(
+            "falsely_inside",
+            "volumes",
+            Lower,
+            "Volumes a frame that were called inside, but cross the frustum by the exact test.",
+        )
+        .surplus(),
+        declare(
+            "overdrawn_nodes",
+            "nodes",
+            Lower,
+            "Nodes drawn a frame though none of their triangles meets the frustum.",
+        )
+        .surplus(),
+        declare("overdrawn_triangles", "triangles", Lower, "Triangles of such nodes.").surplus(),
+        declare(
+            "overdrawn_angle",
+            "%",
+            Lower,
+            "Solid angle that the boxes of such nodes take up, summed over a frame, in per cent of the view's own.",
+        )
+        .surplus(),
         declare("nodes_visible", "nodes", Higher, "Leaf nodes found visible."),
         declare(
             "lost_time",

@@ -3,10 +3,12 @@
 mod aabb_tree;
 mod skip_tree;
 mod statistics;
+mod volumes;
 
 pub use aabb_tree::{AabbTree, AabbTreeNode};
 pub use skip_tree::{SkipNode, SkipTree};
 pub use statistics::TreeStatistics;
+pub use volumes::{VOLUME_KINDS, VolumeKind, Volumes};
 
 use thiserror::Error;
 

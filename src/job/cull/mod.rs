@@ -5,35 +5,24 @@
 //! camera, which any tree scheme can share out. Each processor gathers the part of the visible set that it
 //! found; [`CullTree::visible`] puts the parts together.
 //!
-//! The plane that rejected a box is kept with the box and tested first next time (P1-08). Processors of
-//! successive frames write it, even while another reads it (P2-F17): it is a machine word, read and
-//! written whole, and any plane to start with gives the same answer, so a stale one costs time only.
+//! What a test keeps with a volume from frame to frame (P1-08, P1-12) is written by processors of successive
+//! frames (P2-F17): it is in machine words, read and written whole. In one frame a node is visited by one
+//! processor only, and the next frame begins when all are done with this one.
 
 mod costs;
+mod kept;
+mod test;
 mod work;
 
-use crate::geometry::culling::{self, OctantTest, Side, Verdict};
+use crate::geometry::culling::{self, Motion, Side, Steps, Verdict};
 use crate::geometry::{Frustum, PLANE_COUNT};
 use crate::machine::{Layout, Machine, Shared, Word};
-use crate::structure::SkipTree;
+use crate::structure::{SkipTree, Volumes};
 pub use costs::Costs;
-use std::sync::atomic::Ordering;
-pub use work::{NodeWork, RangeWork, Visible};
-
-/// What the test of a box is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Tests {
-    /// Plane-coherency: the plane that rejected the box last time first.
-    pub plane_coherency: bool,
-    /// The octant test; not for asymmetric frusta.
-    pub octant: bool,
-}
-
-impl Default for Tests {
-    fn default() -> Self {
-        Tests { plane_coherency: true, octant: true }
-    }
-}
+use kept::Kept;
+use std::sync::{Mutex, PoisonError};
+use test::{NodeVolumes, Test};
+pub use work::{NodeTask, NodeWork, RangeTask, RangeWork, Visible};
 
 /// Which nodes a descent goes through.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,9 +44,9 @@ pub enum History {
     /// The plane that rejected it, written when it is another than last time.
     #[default]
     Plane,
-    /// Also the frame in which it was last tested and its signed distances from the six planes, written
-    /// at every visit: what translation and rotation coherency needs (P1-12), and so what the code that
-    /// Paper II shared out kept. Only the traffic of keeping them is here; the test that uses them is not.
+    /// Also its signed distances from the six planes: what translation coherency needs (P1-12), and so what
+    /// the code that Paper II shared out kept. Steps without translation coherency write them all the same, at
+    /// every visit: that is the traffic of keeping them, without what they save.
     Distances,
 }
 
@@ -70,6 +59,9 @@ pub enum CullError {
         /// The frame of the camera path, from 0.
         frame: usize,
     },
+    /// Translation coherency needs a tree with [`History::Distances`].
+    #[error("translation coherency needs a tree that keeps distances")]
+    NoDistances,
 }
 
 /// A node as it lies in shared memory.
@@ -78,31 +70,58 @@ struct Record<W> {
     /// Index after the subtree.
     end: u32,
     triangles: u32,
-    /// The plane that rejected the box when it was last rejected, in the lowest byte; with
-    /// [`History::Distances`] the frame of its last test above it.
+    /// A packed [`Head`](culling::Head).
     tested: W,
 }
 
 /// For each plane the distances of n- and p-vertex, as two `f32` in a word.
 type Distances<W> = [W; PLANE_COUNT];
 
-/// A tree of boxes in the shared memory of a machine.
+/// How many nodes a tree may have: their numbers leave room for a mask in a task.
+pub const MOST_NODES: usize = (1 << 29) - 1;
+
+/// A tree of volumes in the shared memory of a machine.
 pub struct CullTree<M: Machine> {
     records: Shared<Record<M::Word>>,
+    volumes: NodeVolumes,
     /// With [`History::Distances`]: one a node; empty otherwise.
     distances: Shared<Distances<M::Word>>,
+    /// What the camera did up to the last frame that asked for it. It goes with what the nodes keep, so it is
+    /// kept with them.
+    motion: Mutex<Option<Motion>>,
 }
 
 impl<M: Machine> CullTree<M> {
     /// Copies a skip tree into shared memory, record beside record, depth first.
+    ///
+    /// # Panics
+    /// If the tree has more than [`MOST_NODES`].
     pub fn new(machine: &M, tree: &SkipTree, history: History) -> Self {
+        Self::with_volumes(machine, tree, &Volumes::Aabb, history)
+    }
+
+    /// The same with other volumes than the nodes' boxes. These lie in an array of their own.
+    ///
+    /// # Panics
+    /// If there is not one volume a node, or more than [`MOST_NODES`].
+    pub fn with_volumes(machine: &M, tree: &SkipTree, volumes: &Volumes, history: History) -> Self {
+        assert!(tree.nodes.len() <= MOST_NODES, "{} nodes, expected at most {MOST_NODES}", tree.nodes.len());
         let records = machine.alloc(tree.nodes.len(), Layout::Packed, |i| {
             let node = &tree.nodes[i];
             Record { bounds: node.bounds, end: node.end, triangles: node.triangles, tested: Word::new(0) }
         });
         let kept = if history == History::Distances { tree.nodes.len() } else { 0 };
         let distances = machine.alloc(kept, Layout::Packed, |_| std::array::from_fn(|_| Word::new(0)));
-        CullTree { records, distances }
+        let volumes = NodeVolumes::new(machine, volumes, tree.nodes.len());
+        CullTree { records, volumes, distances, motion: Mutex::new(None) }
+    }
+
+    /// The camera's way up to this frame.
+    fn follow(&self, frustum: &Frustum) -> Motion {
+        let mut last = self.motion.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = last.map_or_else(|| Motion::start(frustum), |last| last.next(frustum));
+        *last = Some(now);
+        now
     }
 
     /// How many nodes there are.
@@ -128,43 +147,51 @@ impl<M: Machine> CullTree<M> {
 /// The culling of one tree for one camera.
 pub struct Frame<'a, M: Machine> {
     tree: &'a CullTree<M>,
-    number: usize,
     frustum: &'a Frustum,
-    tests: Tests,
-    octant: Option<OctantTest<'a>>,
+    steps: Steps,
+    test: Test<'a>,
     descent: Descent,
     costs: Costs,
-    /// With [`Descent::NoWork`]: where each box is, found beforehand.
+    /// With [`Descent::NoWork`]: where each volume is, found beforehand.
     answers: Vec<Side>,
 }
 
 impl<'a, M: Machine> Frame<'a, M> {
-    /// The job of frame number `frame` of a camera path.
+    /// The job of frame number `frame` of a camera path. With rotation or translation coherency among the
+    /// steps, it follows the frame that was made before it of the same tree.
     ///
     /// # Errors
-    /// [`CullError::Asymmetric`].
+    /// [`CullError`].
     pub fn new(
         tree: &'a CullTree<M>,
         frame: usize,
         frustum: &'a Frustum,
-        tests: Tests,
+        steps: Steps,
     ) -> Result<Self, CullError> {
-        let octant = if tests.octant {
-            Some(OctantTest::new(frustum).ok_or(CullError::Asymmetric { frame })?)
-        } else {
-            None
-        };
+        if steps.translation && tree.distances.is_empty() && !tree.is_empty() {
+            return Err(CullError::NoDistances);
+        }
+        let motion = (steps.rotation || steps.translation).then(|| tree.follow(frustum));
+        let test = Test::new(&tree.volumes, frustum, steps, motion)
+            .map_err(|culling::Asymmetric| CullError::Asymmetric { frame })?;
         let (descent, costs) = (Descent::default(), Costs::default());
-        Ok(Frame { tree, number: frame, frustum, tests, octant, descent, costs, answers: Vec::new() })
+        Ok(Frame { tree, frustum, steps, test, descent, costs, answers: Vec::new() })
     }
 
     /// Sets which nodes are gone through.
+    ///
+    /// # Panics
+    /// Never: the basic test, which finds the answers of [`Descent::NoWork`], needs no symmetry.
     #[must_use]
     pub fn descent(mut self, descent: Descent) -> Self {
         self.descent = descent;
         if descent == Descent::NoWork {
-            let test = |record: &Record<M::Word>| culling::basic(&record.bounds, self.frustum).side;
-            self.answers = self.tree.records.iter().map(test).collect();
+            let basic = Test::new(&self.tree.volumes, self.frustum, Steps::BASIC, None);
+            let basic = basic.unwrap_or_else(|_| unreachable!("the basic test takes any frustum"));
+            let side = |(i, record): (usize, &Record<M::Word>)| {
+                basic.classify(i, &record.bounds, &culling::Forgetful, 0).side
+            };
+            self.answers = self.tree.records.iter().enumerate().map(side).collect();
         }
         self
     }
@@ -186,31 +213,20 @@ impl<'a, M: Machine> Frame<'a, M> {
         NodeWork(self)
     }
 
-    /// Where a node's box is, and how many planes it took to tell.
+    /// Where a node's volume is, and how many planes it took to tell. `mask` has the planes that the nodes
+    /// above are inside of.
     #[inline]
-    fn test(&self, node: u32, record: &Record<M::Word>) -> Verdict {
+    fn test(&self, node: u32, record: &Record<M::Word>, mask: u8) -> Verdict {
         if self.descent == Descent::NoWork {
-            return Verdict { side: self.answers[node as usize], tests: 0 };
+            return Verdict { side: self.answers[node as usize], tests: 0, inside: 0 };
         }
-        // ORDERING: Relaxed here and below: each word stands for itself, see the head of this file.
-        let first = self.tests.plane_coherency.then(|| record.tested.load(Ordering::Relaxed) as u8);
-        let verdict = match (&self.octant, first) {
-            (Some(octant), first) => octant.classify(&record.bounds, first),
-            (None, Some(first)) => culling::from_plane(&record.bounds, self.frustum, first),
-            (None, None) => culling::basic(&record.bounds, self.frustum),
-        };
-        let by = if let Side::Outside(by) = verdict.side { by } else { first.unwrap_or(0) };
-        if self.tree.distances.is_empty() {
-            if first.is_some_and(|first| by != first) {
-                record.tested.store(u64::from(by), Ordering::Relaxed);
-            }
-        } else {
-            record.tested.store((self.number as u64) << 8 | u64::from(by), Ordering::Relaxed);
-            for (word, plane) in self.tree.distances[node as usize].iter().zip(&self.frustum.planes) {
-                let (nearest, farthest) = plane.extremes(&record.bounds);
-                let pair = u64::from(nearest.to_bits()) << 32 | u64::from(farthest.to_bits());
-                word.store(pair, Ordering::Relaxed);
-            }
+        let kept = !self.tree.distances.is_empty();
+        let distances = kept.then(|| &self.tree.distances[node as usize]);
+        let each_visit = kept && !self.steps.translation;
+        let kept = Kept::new(&record.tested, distances, each_visit);
+        let verdict = self.test.classify(node as usize, &record.bounds, &kept, mask);
+        if each_visit {
+            kept.keep_all(&record.bounds, &self.frustum.planes, verdict.side);
         }
         verdict
     }

@@ -107,6 +107,7 @@ pub struct SubjectCache {
 
 /// A scene ready to be gone through: its tree and a camera for each frame.
 struct Stage {
+    scene: Scene,
     tree: SkipTree,
     cameras: Vec<Camera>,
 }
@@ -151,7 +152,7 @@ impl SubjectCache {
         }
         let tree = SkipTree::build(&AabbTree::build(&scene));
         tree.validate().map_err(failed)?;
-        let stage = Rc::new(Stage { tree, cameras: path.frames });
+        let stage = Rc::new(Stage { scene, tree, cameras: path.frames });
         self.scenes.insert(key, stage.clone());
         Ok(stage)
     }

@@ -4,6 +4,8 @@ use super::{Cell, MeasureError};
 use crate::measure::near;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::str::FromStr;
 
 /// A scheme's settings that are really the job's: how the job presents itself to this scheme.
 const OF_THE_JOB: [&str; 1] = ["tasks"];
@@ -31,6 +33,17 @@ impl JobSettings {
             let words = words.iter().map(|(word, _)| *word).collect::<Vec<_>>().join(", ");
             MeasureError::Setting(format!("setting `{}` is `{value}`, expected one of: {words}", whole(key)))
         })
+    }
+
+    /// What a text stands for; none where the setting is absent.
+    pub(super) fn parsed<T: FromStr<Err: Display>>(
+        &self,
+        key: &'static str,
+    ) -> Result<Option<T>, MeasureError> {
+        self.known.borrow_mut().push(key);
+        let Some(value) = self.values.get(key) else { return Ok(None) };
+        let wrong = |error| MeasureError::Setting(format!("setting `{}`: {error}", whole(key)));
+        value.parse().map(Some).map_err(wrong)
     }
 
     /// A number within a range.

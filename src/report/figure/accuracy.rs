@@ -2,8 +2,9 @@
 //!
 //! A panel holds cells that are alternatives: one machine, job and scene. What is given up in *structure* is more
 //! work for the same answer, so that cells stand together only where their answer, the nodes found visible, is the
-//! same; where rows do not tell the answer, only those that share their common settings do. Where no cell gives up
-//! more than another there is no choice to show, and nothing is drawn.
+//! same; where rows do not tell the answer, only those that share their common settings do. Where what is counted is
+//! by how much an answer is too large, all cells of the same scene and camera path stand together. Where no cell
+//! gives up more than another there is no choice to show, and nothing is drawn.
 
 use super::time::unit;
 use super::words::{bare, machine, number};
@@ -52,6 +53,7 @@ fn figure(material: &Material<'_>, kind: AccuracyKind) -> Option<Figure> {
             let Some(&time) = times.get(key) else { continue };
             let &(machine, job, scene, scheme, settings, processors) = key;
             let same = match (kind, answers.get(key)) {
+                _ if metric.counts_surplus => of_the_scene(settings),
                 (AccuracyKind::Structure, Some(answer)) => number(*answer),
                 (AccuracyKind::Structure, None) => split(settings, machine).0,
                 _ => String::new(),
@@ -76,6 +78,12 @@ fn figure(material: &Material<'_>, kind: AccuracyKind) -> Option<Figure> {
         legend: entries.into_iter().map(|(_, entry)| entry).collect(),
         panels,
     })
+}
+
+/// The settings that say what is looked at, and from where.
+fn of_the_scene(settings: &str) -> String {
+    let pairs = settings_pairs(settings).filter(|(key, _)| key.starts_with("scene."));
+    pairs.map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(";")
 }
 
 fn panel(

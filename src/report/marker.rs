@@ -84,6 +84,12 @@ impl Look {
         }
     }
 
+    /// The look of the so-many-th of some things that are no schemes.
+    pub(crate) fn nth(number: usize) -> Self {
+        let (colour, round) = (number % COLOURS.len(), number / COLOURS.len());
+        Self { colour, mark: (colour + 3 * round) % MARKS.len(), dash: 0, shade: 0 }
+    }
+
     /// A colour with the first mark, for what is no scheme.
     pub(crate) fn plain(colour: usize) -> Self {
         Self { colour, mark: 0, dash: 0, shade: 0 }

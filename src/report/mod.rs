@@ -9,6 +9,7 @@
 //!
 //! The same rows give the same bytes.
 
+mod choices;
 pub mod comparison;
 mod doubt;
 mod draw;

@@ -1,5 +1,6 @@
 //! Paper, simulated and measured, side by side.
 
+use super::choices::{Choices, choices, compared};
 use super::doubt::doubts;
 use super::group::{Curve, Group, groups};
 use super::text;
@@ -42,7 +43,7 @@ pub struct Line {
     pub error_measured: Option<f64>,
 }
 
-/// A table: the paper's figures first, then all other speedups.
+/// A table: the paper's figures first, then all other speedups, or where nothing was shared out all other numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     /// Its lines.
@@ -51,11 +52,13 @@ pub struct Table {
     pub(crate) groups: Vec<Group>,
     /// For each group, what its numbers cannot tell.
     pub(crate) doubts: Vec<Vec<String>>,
+    /// The cells of a run in which nothing is shared out.
+    pub(crate) choices: Vec<Choices>,
 }
 
 /// Makes the table of a run.
 pub fn table(rows: &[Row], figures: &[PaperFigure]) -> Table {
-    let speedups = groups(rows, "speedup");
+    let speedups = compared(rows);
     let mut lines: Vec<Line> = figures.iter().map(|figure| figure_line(rows, figure)).collect();
     for group in speedups.iter().filter(|group| group.machine != THREADS) {
         let twin = speedups.iter().find(|other| is_twin(other, group));
@@ -77,7 +80,9 @@ pub fn table(rows: &[Row], figures: &[PaperFigure]) -> Table {
         }
     }
     let doubts = doubts(rows, &speedups);
-    Table { lines, groups: speedups, doubts }
+    let choices = choices(rows);
+    lines.extend(choices.iter().flat_map(choice_lines));
+    Table { lines, groups: speedups, doubts, choices }
 }
 
 impl Table {
@@ -159,6 +164,32 @@ fn point(group: &Group, like: &Curve, processors: u32) -> Option<Interval> {
     let curve =
         group.curves.iter().find(|curve| curve.scheme == like.scheme && curve.settings == like.settings)?;
     curve.points.get(&processors).copied()
+}
+
+/// A line for each number of each cell.
+fn choice_lines(choices: &Choices) -> impl Iterator<Item = Line> {
+    let measured = choices.machine == THREADS;
+    choices.lines.iter().flat_map(move |choice| {
+        let numbers = choices.columns.iter().zip(&choice.values);
+        numbers.filter_map(|(metric, value)| Some((metric, value.as_ref()?.median))).map(
+            move |(metric, value)| Line {
+                figure: None,
+                scheme: "serial".to_owned(),
+                settings: choice.settings.clone(),
+                scene: choices.scene.clone(),
+                machine: choices.machine.clone(),
+                processors: Some(1),
+                peak_of: None,
+                metric: metric.name.to_owned(),
+                unit: metric.unit.to_owned(),
+                paper: None,
+                simulated: (!measured).then_some(value),
+                measured: measured.then_some(value),
+                error_simulated: None,
+                error_measured: None,
+            },
+        )
+    })
 }
 
 fn speedup_line(

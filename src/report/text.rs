@@ -1,5 +1,6 @@
 //! The table as text: the paper's figures, then speedups by processors.
 
+use super::choices::Choices;
 use super::group::{Curve, Group};
 use super::table::{Line, Table};
 use super::winners::winners;
@@ -23,6 +24,7 @@ pub(crate) fn text(table: &Table) -> String {
         parts.push(group_text(group) + &notes);
     }
     parts.extend(winners(&table.groups));
+    parts.extend(table.choices.iter().map(Choices::text));
     if parts.is_empty() { "no rows to show".to_owned() } else { parts.join("\n") }
 }
 

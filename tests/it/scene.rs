@@ -41,9 +41,14 @@ fn fingerprint(scene: &Scene) -> u64 {
 
 #[test]
 fn factories_have_the_counts_of_the_papers() {
-    for (name, nodes, triangles) in
-        [("factory-large", 3932, 184_000), ("factory-medium", 1137, 52_000), ("factory-small", 254, 167_000)]
-    {
+    for (name, nodes, triangles) in [
+        ("factory-large", 3932, 184_000),
+        ("factory-medium", 1137, 52_000),
+        ("factory-small", 254, 167_000),
+        ("factory-model1", 3800, 184_000),
+        ("factory-model2", 188, 167_000),
+        ("factory-model3", 1274, 52_000),
+    ] {
         let description = scene::describe(&scene::by_name(name).unwrap());
         assert_eq!((description.nodes, description.instanced_triangles), (nodes, triangles), "{name}");
     }

@@ -26,6 +26,8 @@ pub struct Culler<'a, V: Volume> {
     steps: Steps,
     fields: [V::Field; PLANE_COUNT],
     eye: V::Eye,
+    /// There are but the cached plane and the octant among the steps.
+    plain: bool,
     projection: Option<Projection>,
     motion: Option<Motion>,
 }
@@ -42,7 +44,8 @@ impl<'a, V: Volume> Culler<'a, V> {
         }
         let motion = motion.filter(|motion| !motion.is_spent());
         let projection = (steps.space != Space::World).then(|| Projection::new(frustum));
-        Ok(Self { steps, motion, projection, ..Self::basic(frustum) })
+        let common = Steps { cached: steps.cached, octant: steps.octant, ..Steps::BASIC };
+        Ok(Self { steps, plain: steps == common, motion, projection, ..Self::basic(frustum) })
     }
 
     /// The test by all six planes and nothing else.
@@ -53,6 +56,7 @@ impl<'a, V: Volume> Culler<'a, V> {
             steps: Steps::BASIC,
             fields: frustum.kernel.map(|plane| V::field(plane.normal)),
             eye: V::eye(frustum.eye),
+            plain: true,
             projection: None,
             motion: None,
         }
@@ -62,27 +66,36 @@ impl<'a, V: Volume> Culler<'a, V> {
     /// [`Steps::masking`] only.
     #[inline]
     pub fn classify<M: Memory>(&self, volume: &V, memory: &M, mask: u8) -> Verdict {
+        // The usual steps have code of their own, without the branches of the others.
+        if self.plain { self.go::<M, true>(volume, memory, 0) } else { self.any_steps(volume, memory, mask) }
+    }
+
+    #[inline(never)]
+    fn any_steps<M: Memory>(&self, volume: &V, memory: &M, mask: u8) -> Verdict {
+        self.go::<M, false>(volume, memory, mask)
+    }
+
+    #[inline(always)]
+    fn go<M: Memory, const PLAIN: bool>(&self, volume: &V, memory: &M, mask: u8) -> Verdict {
         let head = if self.steps.remember() { memory.head() } else { Head::default() };
-        if self.steps.rotation && self.motion.is_some_and(|motion| motion.still_outside(head)) {
+        if !PLAIN && self.steps.rotation && self.motion.is_some_and(|motion| motion.still_outside(head)) {
             return Verdict { side: Side::Outside(head.plane), tests: 0, inside: 0 };
         }
-        if volume.is_nan() {
-            return Verdict { side: Side::Intersecting, tests: 0, inside: 0 };
-        }
         if volume.is_empty() {
-            return Verdict { side: Side::Outside(0), tests: 0, inside: 0 };
+            let side = if volume.is_nan() { Side::Intersecting } else { Side::Outside(0) };
+            return Verdict { side, tests: 0, inside: 0 };
         }
-        if let Some(projection) = &self.projection {
+        if let Some(projection) = self.projection.as_ref().filter(|_| !PLAIN) {
             return projection.classify(volume, self.steps.space);
         }
-        let inside = if self.steps.masking { mask & ALL } else { 0 };
-        let walk = Walk {
+        let inside = if !PLAIN && self.steps.masking { mask & ALL } else { 0 };
+        let walk = Walk::<V, M, PLAIN> {
             culler: self,
             placed: volume.placed(&self.eye),
             memory,
             inside,
             tested: inside,
-            crossed: None,
+            crossed: NONE,
             tests: 0,
             valid: 0,
         };
@@ -90,8 +103,11 @@ impl<'a, V: Volume> Culler<'a, V> {
     }
 }
 
+/// No plane.
+const NONE: u8 = PLANE_COUNT as u8;
+
 /// One volume on its way through the planes.
-struct Walk<'c, 'a, V: Volume + 'c, M> {
+struct Walk<'c, 'a, V: Volume + 'c, M, const PLAIN: bool> {
     culler: &'c Culler<'a, V>,
     placed: V::Placed<'c>,
     memory: &'c M,
@@ -99,33 +115,33 @@ struct Walk<'c, 'a, V: Volume + 'c, M> {
     inside: u8,
     /// The planes that need no test any more.
     tested: u8,
-    /// The first plane it may cross.
-    crossed: Option<u8>,
+    /// The first plane it may cross, or [`NONE`].
+    crossed: u8,
     tests: u32,
     /// The planes whose distances are kept, of this epoch.
     valid: u8,
 }
 
-impl<'c, V: Volume, M: Memory> Walk<'c, '_, V, M> {
-    #[inline]
+impl<'c, V: Volume, M: Memory, const PLAIN: bool> Walk<'c, '_, V, M, PLAIN> {
+    #[inline(always)]
     fn go(mut self, volume: &V, head: Head) -> Verdict {
         let steps = &self.culler.steps;
         let rejected = self.find_rejecting(volume, head);
-        if let Some(motion) = &self.culler.motion {
-            let plane = rejected.or(self.crossed.filter(|_| steps.cached == Cached::Crossed));
+        let crossed = Some(self.crossed).filter(|crossed| *crossed != NONE);
+        let kept = rejected.or(crossed.filter(|_| steps.cached == Cached::Crossed));
+        if let Some(motion) = self.culler.motion.as_ref().filter(|_| !PLAIN) {
             let rejected = if rejected.is_some() { motion.frame + 1 } else { 0 };
-            let plane = plane.unwrap_or(head.plane);
+            let plane = kept.unwrap_or(head.plane);
             let now = Head { plane, valid: self.valid, rejected, epoch: motion.epoch };
             if now != head {
                 self.memory.keep(now);
             }
         } else if steps.cached != Cached::Nothing {
-            let crossed = self.crossed.filter(|_| steps.cached == Cached::Crossed);
-            if let Some(plane) = rejected.or(crossed).filter(|plane| *plane != head.plane) {
+            if let Some(plane) = kept.filter(|plane| *plane != head.plane) {
                 self.memory.keep(Head { plane, ..Head::default() });
             }
         }
-        let side = match (rejected, self.crossed) {
+        let side = match (rejected, crossed) {
             (Some(plane), _) => Side::Outside(plane),
             (None, Some(_)) => Side::Intersecting,
             (None, None) => Side::Inside,
@@ -134,13 +150,13 @@ impl<'c, V: Volume, M: Memory> Walk<'c, '_, V, M> {
     }
 
     /// Goes through the steps until a plane rejects.
-    #[inline]
+    #[inline(always)]
     fn find_rejecting(&mut self, volume: &V, head: Head) -> Option<u8> {
         let steps = &self.culler.steps;
-        if let Some(plane) = self.carry_over(head) {
+        if !PLAIN && let Some(plane) = self.carry_over(head) {
             return Some(plane);
         }
-        if steps.cached != Cached::Nothing && self.test(1 << head.plane) {
+        if steps.cached != Cached::Nothing && self.test(usize::from(head.plane)) {
             return Some(head.plane);
         }
         let octant = if steps.octant == Octant::Off { None } else { self.octant(volume) };
@@ -148,7 +164,7 @@ impl<'c, V: Volume, M: Memory> Walk<'c, '_, V, M> {
         if let Some(plane) = self.reject(chosen) {
             return Some(plane);
         }
-        if self.crossed.is_none() && octant.is_some() {
+        if self.crossed == NONE && octant.is_some() {
             match steps.octant {
                 Octant::AsPublished => self.inside = ALL,
                 // They reject nothing that lies inside three planes around its middle, but one may cross it.
@@ -179,20 +195,20 @@ impl<'c, V: Volume, M: Memory> Walk<'c, '_, V, M> {
     }
 
     /// Tests planes, least first, until one rejects.
-    #[inline]
+    #[inline(always)]
     fn reject(&mut self, among: u8) -> Option<u8> {
-        planes(among).find(|plane| self.test(1 << *plane as u8)).map(|plane| plane as u8)
+        // A pair may be done with both of its planes at once, so `test` asks again.
+        planes(among & !self.tested).find(|plane| self.test(*plane)).map(|plane| plane as u8)
     }
 
-    /// Tests the plane of this bit, unless that was done; whether it rejects.
-    #[inline]
-    fn test(&mut self, bit: u8) -> bool {
-        if self.tested & bit != 0 {
+    /// Tests a plane, unless that was done; whether it rejects.
+    #[inline(always)]
+    fn test(&mut self, plane: usize) -> bool {
+        if !PLAIN && self.tested >> plane & 1 != 0 {
             return false;
         }
-        let plane = bit.trailing_zeros() as usize;
         self.tests += 1;
-        if self.culler.steps.pair && bit & PAIR != 0 && self.tested & PAIR == 0 {
+        if !PLAIN && self.culler.steps.pair && PAIR >> plane & 1 != 0 && self.tested & PAIR == 0 {
             return self.test_pair(plane);
         }
         let at = &self.culler.frustum.kernel[plane];
@@ -201,7 +217,7 @@ impl<'c, V: Volume, M: Memory> Walk<'c, '_, V, M> {
         let slack = self.placed.slack();
         // The p-vertex of a volume that is outside is never looked at, unless its distance is to be kept.
         let far = |walk: &Self| at.farthest(&walk.placed, &field);
-        if self.culler.steps.translation {
+        if !PLAIN && self.culler.steps.translation {
             self.keep(plane, near - slack, far(self) + slack);
         }
         let outside = near > slack;
@@ -236,17 +252,17 @@ impl<'c, V: Volume, M: Memory> Walk<'c, '_, V, M> {
 
     #[inline]
     fn field(&self, plane: usize, at: &KernelPlane) -> V::Field {
-        if self.culler.steps.fields { self.culler.fields[plane] } else { V::field(at.normal) }
+        if PLAIN || self.culler.steps.fields { self.culler.fields[plane] } else { V::field(at.normal) }
     }
 
     /// Notes what a plane said; whether it rejects.
-    #[inline]
+    #[inline(always)]
     fn note(&mut self, plane: usize, outside: bool, inside: bool) -> bool {
         self.tested |= 1 << plane;
         if inside {
             self.inside |= 1 << plane;
-        } else if !outside && self.crossed.is_none() {
-            self.crossed = Some(plane as u8);
+        } else if !outside && self.crossed == NONE {
+            self.crossed = plane as u8;
         }
         outside
     }

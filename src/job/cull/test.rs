@@ -62,6 +62,15 @@ macro_rules! volumes {
             pub(super) fn classify<K: Memory>(&self, node: usize, bounds: &Aabb, kept: &K, mask: u8) -> Verdict {
                 match self {
                     Self::Aabb(culler) => culler.classify(bounds, kept, mask),
+                    other => other.classify_other(node, kept, mask),
+                }
+            }
+
+            /// The same for the other volumes: apart, so that not every scheme has the code of them all in it.
+            #[inline(never)]
+            fn classify_other<K: Memory>(&self, node: usize, kept: &K, mask: u8) -> Verdict {
+                match self {
+                    Self::Aabb(_) => unreachable!("boxes are tested where they are"),
                     $(Self::$kind(culler, volumes) => culler.classify(&volumes[node], kept, mask),)*
                 }
             }

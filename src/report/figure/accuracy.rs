@@ -11,6 +11,7 @@ use super::words::{bare, machine, number};
 use super::{Axis, Body, Entry, Figure, Material, Panel, Plot, Point, Scale, Series, Style};
 use crate::record::statistics::median;
 use crate::record::{AccuracyKind, Better, METRICS, Metric, Row, settings_pairs};
+use crate::report::choices::{labels, views};
 use crate::report::group::split;
 use crate::report::marker::Look;
 use std::collections::BTreeMap;
@@ -47,6 +48,9 @@ fn figure(material: &Material<'_>, kind: AccuracyKind) -> Option<Figure> {
     let (times, answers) = (medians(rows, "total_time"), medians(rows, "nodes_visible"));
     let mut entries: Vec<(String, Entry)> = Vec::new();
     let mut panels = Vec::new();
+    // Where nothing is shared out, settings have looks of their own instead of the one scheme.
+    let (label, view) = (labels(rows), views(rows));
+    let name: Option<&dyn Fn(&str) -> String> = if material.choices.is_empty() { None } else { Some(&label) };
     for metric in METRICS.iter().filter(|metric| metric.accuracy == Some(kind)) {
         let mut places: BTreeMap<(&str, &str, &str, String), Vec<Choice<'_>>> = BTreeMap::new();
         for (key, &given_up) in &medians(rows, metric.name) {
@@ -63,7 +67,8 @@ fn figure(material: &Material<'_>, kind: AccuracyKind) -> Option<Figure> {
         }
         for ((machine, _, scene, _), choices) in places {
             if choices.iter().any(|choice| choice.given_up != choices[0].given_up) {
-                panels.push(panel(machine, scene, metric, &choices, &mut entries, panels.len()));
+                let place = (machine, scene, view(choices[0].settings));
+                panels.push(panel(&place, metric, &choices, &mut entries, panels.len(), name));
             }
         }
     }
@@ -87,19 +92,20 @@ fn of_the_scene(settings: &str) -> String {
 }
 
 fn panel(
-    place: &str,
-    scene: &str,
+    (place, scene, view): &(&str, &str, String),
     metric: &Metric,
     choices: &[Choice<'_>],
     entries: &mut Vec<(String, Entry)>,
     pair: usize,
+    name: Option<&dyn Fn(&str) -> String>,
 ) -> Panel {
     let (scale, unit) = unit(choices.iter().map(|choice| choice.time).fold(0.0, f64::max));
     let mut series: Vec<Series> = Vec::new();
     for choice in choices {
-        let number = entries.iter().position(|(scheme, _)| scheme == choice.scheme).unwrap_or_else(|| {
-            let entry = Entry { label: choice.scheme.to_owned(), look: Look::of(choice.scheme, 0) };
-            entries.push((choice.scheme.to_owned(), entry));
+        let label = name.map_or_else(|| choice.scheme.to_owned(), |name| name(choice.settings));
+        let number = entries.iter().position(|(known, _)| *known == label).unwrap_or_else(|| {
+            let look = if name.is_some() { Look::nth(entries.len()) } else { Look::of(choice.scheme, 0) };
+            entries.push((label.clone(), Entry { label, look }));
             entries.len() - 1
         });
         let differs = |pair: &(&str, &str)| {
@@ -133,10 +139,14 @@ fn panel(
     let front = front(&all, metric.better);
     series.insert(0, Series { style: Style::Front, entry: None, points: front });
     Panel {
-        heading: format!("{}, {scene}", machine(place)),
+        heading: [machine(place).to_string(), (*scene).to_owned(), view.clone()]
+            .into_iter()
+            .filter(|word| !word.is_empty())
+            .collect::<Vec<_>>()
+            .join(", "),
         place: String::new(),
-        file: format!("{place}-{scene}-{}", metric.name),
-        machine: place.to_owned(),
+        file: format!("{place}-{scene}-{}{}", metric.name, view.replace([' ', '='], "-")),
+        machine: (*place).to_owned(),
         group: None,
         pair,
         note: String::new(),

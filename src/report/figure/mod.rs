@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod balance;
+mod baseline;
 mod curves;
 mod frames;
 mod plane;
@@ -11,16 +12,19 @@ mod time;
 mod timeline;
 mod words;
 
+pub(crate) use time::unit;
 pub(crate) use timeline::{ACTIVITIES, shares, wrong};
 pub(crate) use words::number;
 
 use super::Run;
-use super::group::{Group, groups};
+use super::choices::{Choices, choices, compared};
+use super::group::Group;
 use super::marker::Look;
 
 /// Every kind of figure, in the order of a page; each gives as many as the rows have to show.
 const KINDS: &[fn(&Material<'_>) -> Vec<Figure>] = &[
     plane::figures,
+    baseline::figures,
     speedup::figures,
     time::figures,
     accuracy::figures,
@@ -41,16 +45,18 @@ pub(crate) struct Material<'a> {
     pub(crate) run: &'a Run,
     /// Speedups, each simulated group followed by its measured twin.
     pub(crate) groups: Vec<Group>,
+    /// The cells of a run in which nothing is shared out.
+    pub(crate) choices: Vec<Choices>,
 }
 
 impl<'a> Material<'a> {
     fn new(run: &'a Run) -> Self {
-        let mut groups = groups(&run.rows, "speedup");
+        let mut groups = compared(&run.rows);
         let pairs: Vec<_> = groups.iter().map(pair).collect();
         let first = |group: &Group| pairs.iter().position(|other| *other == pair(group));
         // Stable: within a pair the order of the rows stays, simulated machines before real ones.
         groups.sort_by_key(|group| (first(group), group.machine == crate::record::THREADS));
-        Self { run, groups }
+        Self { run, groups, choices: choices(&run.rows) }
     }
 }
 

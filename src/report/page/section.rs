@@ -1,7 +1,7 @@
 //! One run: what it asked, the paper's table, its figures, where it was made.
 
 use super::figure;
-use super::tables::{doubts, paper};
+use super::tables::{choices, doubts, paper};
 use crate::record::settings_pairs;
 use crate::report::escape::{attribute, link};
 use crate::report::figure::Figure;
@@ -26,6 +26,7 @@ impl Section<'_> {
         let table = table(&self.run.rows, &self.run.question.paper);
         html.push_str(&paper(&table));
         html.push_str(&doubts(&table));
+        html.push_str(&choices(&table));
         for figure in &self.figures {
             html.push_str(&figure::html(&self.id, &self.run.link, figure)?);
         }

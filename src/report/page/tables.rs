@@ -51,6 +51,34 @@ pub(super) fn paper(table: &Table) -> String {
     html + "</table></div>\n"
 }
 
+/// The cells of a run in which nothing is shared out, a table for each scene and camera path.
+pub(super) fn choices(table: &Table) -> String {
+    let mut html = String::new();
+    for choices in &table.choices {
+        let place = format!("{} on {} {}", choices.scene, choices.machine, choices.view);
+        let place = attribute(place.trim());
+        let _ = write!(
+            html,
+            "<details><summary>Cells of {place}: medians</summary><div class=\"wide\" tabindex=\"0\" role=\"region\" \
+             aria-label=\"Cells of {place}\"><table><thead><tr><th scope=\"col\">Test"
+        );
+        let columns: Vec<_> = (0..choices.columns.len()).map(|column| choices.column(column)).collect();
+        columns.iter().for_each(|(heading, _)| {
+            let _ = write!(html, "<th scope=\"col\" class=\"n\">{}", attribute(heading));
+        });
+        html.push_str("<tbody>\n");
+        for (number, line) in choices.lines.iter().enumerate() {
+            let _ = write!(html, "<tr><th scope=\"row\">{}", attribute(&line.label));
+            columns.iter().for_each(|(_, cells)| {
+                let _ = write!(html, "<td class=\"n\">{}", attribute(&cells[number]));
+            });
+            html.push('\n');
+        }
+        html.push_str("</table></div></details>\n");
+    }
+    html
+}
+
 /// What the measured numbers cannot tell apart, what was far out, and how much of a core was lost to others;
 /// nothing where nothing was measured.
 pub(super) fn doubts(table: &Table) -> String {

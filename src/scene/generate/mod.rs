@@ -39,7 +39,8 @@ pub struct Aisles {
 }
 
 /// All generators.
-pub const GENERATORS: &[Generator] = &[factory::LARGE, factory::MEDIUM, factory::SMALL];
+pub const GENERATORS: &[Generator] =
+    &[factory::LARGE, factory::MEDIUM, factory::SMALL, factory::MODEL_1, factory::MODEL_2, factory::MODEL_3];
 
 /// Makes a scene by its name.
 ///

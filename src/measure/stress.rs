@@ -1,9 +1,11 @@
-//! Schemes and primitives under random load on real threads, with their invariants checked run by run.
+//! Schemes and primitives under random load on real threads, and culling tests under random volumes, with their
+//! invariants checked run by run.
 //!
 //! Tiny queues, random pauses and more workers than cores bring about the interleavings that ordinary
 //! runs seldom see. A schedule of real threads cannot be repeated, but what was asked of it can: each
 //! run has a seed. A run that never ends shows in a progress that stops.
 
+mod culling;
 mod primitives;
 mod trees;
 
@@ -13,15 +15,19 @@ use crate::scheme::tree::SCHEMES;
 use std::time::{Duration, Instant};
 
 /// The primitives that can be stressed by themselves.
-const PRIMITIVES: &[(&str, primitives::Check)] =
-    &[("in_queue", primitives::in_queue), ("lock", primitives::lock), ("quiescence", primitives::quiescence)];
+const PRIMITIVES: &[(&str, primitives::Check)] = &[
+    ("in_queue", primitives::in_queue),
+    ("lock", primitives::lock),
+    ("quiescence", primitives::quiescence),
+    ("cull_tests", culling::tests),
+];
 
 /// What was run, and what went wrong.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct StressReport {
     /// Runs made.
     pub runs: u64,
-    /// Nodes visited, tasks passed on, or turns taken in these runs.
+    /// Nodes visited, tasks passed on, turns taken, or verdicts given in these runs.
     pub nodes: u64,
     /// Invariants found broken. Stressing ends at the first of them.
     pub violations: Vec<Violation>,

@@ -83,7 +83,8 @@ fn damaged_kept_files_are_made_anew() {
     let (parsed, origin) = cache.load(&path).unwrap();
     let Origin::Kept(kept) = origin else { panic!("{origin}") };
     let good = std::fs::read(&kept).unwrap();
-    let damages: [&dyn Fn(&mut Vec<u8>); 7] = [
+    type Damage<'a> = &'a dyn Fn(&mut Vec<u8>);
+    let damages: [Damage<'_>; 7] = [
         &|bytes| bytes.clear(),
         &|bytes| bytes.truncate(bytes.len() - 1),
         &|bytes| bytes.push(0),

@@ -44,9 +44,14 @@ pub(crate) enum Action {
     #[command(after_help = COMPARE_EXAMPLES)]
     Compare(CompareWords),
     /// Tell what a scene holds.
-    #[command(after_help = "Examples:\n  apportion scene assembly.glb\n  apportion scene factory-large")]
+    ///
+    /// Large files are kept, parsed, in the user's cache folder and are read from there the next time, until they
+    /// change. The variable APPORTION_CACHE names another folder, or says `off`.
+    #[command(
+        after_help = "Examples:\n  apportion scene assembly.glb\n  apportion scene dragon.ply.gz\n  apportion scene factory-large"
+    )]
     Scene {
-        /// A file (glTF, GLB, OBJ) or the name of a generated scene.
+        /// A file (glTF, GLB, OBJ, PLY, STL; also .gz) or the name of a generated scene.
         #[arg(value_name = "FILE|NAME")]
         scene: String,
     },
@@ -144,7 +149,7 @@ pub(crate) enum Format {
 /// The words of `advise`.
 #[derive(Debug, Args)]
 pub(crate) struct AdviseWords {
-    /// A file (glTF, GLB, OBJ) or the name of a generated scene.
+    /// A file (glTF, GLB, OBJ, PLY, STL; also .gz) or the name of a generated scene.
     #[arg(long, value_name = "FILE|NAME")]
     pub(crate) scene: String,
     /// What is to be done with it.

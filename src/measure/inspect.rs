@@ -1,6 +1,6 @@
 //! What the commands `scene` and `machine` show.
 
-use super::subject::scene as open_scene;
+use super::subject::read_scene;
 use super::{MeasureError, near};
 use crate::machine::Threads;
 use crate::machine::simulated::Model;
@@ -14,7 +14,7 @@ use std::fmt::Write;
 /// # Errors
 /// The scene cannot be had.
 pub fn scene(name: &str) -> Result<String, MeasureError> {
-    let scene = open_scene(name)?;
+    let (scene, origin) = read_scene(name)?;
     let holds = describe(&scene);
     let tree = SkipTree::build(&AabbTree::build(&scene));
     let shape = TreeStatistics::of(&tree);
@@ -23,6 +23,9 @@ pub fn scene(name: &str) -> Result<String, MeasureError> {
         writeln!(text, "{what:22} {value}").expect("a string takes all");
     };
     line("scene", holds.name);
+    if let Some(origin) = origin {
+        line("read from", origin.to_string());
+    }
     line(
         "graph",
         format!(

@@ -1,7 +1,6 @@
 //! What can be wrong with a scene, a camera path or their names.
 
 use std::io;
-use std::path::Path;
 
 use thiserror::Error;
 
@@ -38,7 +37,9 @@ pub enum SceneError {
         expected: String,
     },
     /// No format has this extension.
-    #[error("{file}: unknown scene format {extension:?}; expected one of {known}")]
+    #[error(
+        "{file}: unknown scene format {extension:?}; expected one of {known}, or one of these with .gz after it"
+    )]
     UnknownFormat {
         /// The file.
         file: String,
@@ -71,19 +72,4 @@ impl SceneError {
             expected: expected.into(),
         }
     }
-}
-
-/// Reads a whole file.
-pub(super) fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
-    std::fs::read(path).map_err(|source| SceneError::Read { file: path.display().to_string(), source })
-}
-
-/// Reads a whole file of text.
-pub(super) fn read_text(path: &Path) -> Result<String, SceneError> {
-    String::from_utf8(read(path)?).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..valid].iter().filter(|byte| **byte == b'\n').count() + 1;
-        let file = path.display().to_string();
-        SceneError::malformed(&file, format!("line {line}"), "a byte that is not UTF-8", "text in UTF-8")
-    })
 }

@@ -3,6 +3,7 @@
 //! Lengths are in metres; y is up in generated scenes. A new file format is one file in `formats/` and
 //! one line in its list; a new generator one file in `generate/` and one line in its list.
 
+mod cache;
 mod describe;
 mod error;
 mod formats;
@@ -11,8 +12,10 @@ mod graph;
 mod names;
 mod path;
 mod random;
+mod source;
 mod validate;
 
+pub use cache::{Cache, Origin};
 pub use describe::{Description, describe};
 pub use error::SceneError;
 pub use formats::{FORMATS, Format, load};

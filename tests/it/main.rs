@@ -5,6 +5,8 @@ mod command_line;
 mod compare;
 mod experiment;
 mod house_rules;
+mod loaders;
+mod memory;
 mod mock;
 mod page;
 mod record;

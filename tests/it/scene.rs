@@ -2,16 +2,20 @@
 
 use std::path::PathBuf;
 
-use apportion::scene::{self, CameraPath, GENERATORS, Scene};
+use apportion::scene::{self, Cache, CameraPath, GENERATORS, Origin, Scene};
 
 /// A real scene, or `None` with a note: the package has to pass its tests without them.
 fn real(file: &str) -> Option<Scene> {
+    Some(scene::load(real_path(file)?).unwrap_or_else(|error| panic!("{error}")))
+}
+
+fn real_path(file: &str) -> Option<PathBuf> {
     let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/scenes")).join(file);
     if !path.exists() {
         eprintln!("skipped: {} is not here", path.display());
         return None;
     }
-    Some(scene::load(&path).unwrap_or_else(|error| panic!("{error}")))
+    Some(path)
 }
 
 /// FNV-1a over everything a generated scene is made of.
@@ -72,7 +76,11 @@ fn unknown_names_and_formats_list_the_known() {
     assert_eq!(message, "unknown scene \"factory-lrage\"; did you mean factory-large?");
     assert!(scene::by_name("").unwrap_err().to_string().contains("factory-small"));
     let message = scene::load("model.step").unwrap_err().to_string();
-    assert!(message.contains("model.step") && message.contains(".gltf, .glb, .obj"), "{message}");
+    assert!(
+        message.contains("model.step")
+            && message.contains(".gltf, .glb, .obj, .ply, .stl, or one of these with .gz"),
+        "{message}"
+    );
     let message = scene::load("missing.obj").unwrap_err().to_string();
     assert!(message.starts_with("missing.obj: cannot be read"), "{message}");
 }
@@ -121,4 +129,35 @@ fn architecture_from_obj() {
         assert_eq!(description.unique_triangles, 36_290);
         assert_eq!((description.aspect_p90.round(), description.aspect_p99.round()), (1844.0, 3466.0));
     }
+}
+
+#[test]
+fn scanned_models() {
+    if let Some(scene) = real("stanford_bunny/bun_zipper.ply") {
+        let description = scene::describe(&scene);
+        assert_eq!((description.nodes, description.unique_triangles), (1, 69_451));
+        assert_eq!(scene.meshes[0].positions.len(), 35_947);
+    }
+    if let Some(path) = real_path("stanford_dragon/dragon_vrip.ply.gz") {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = Cache::in_folder(folder.path());
+        let (parsed, origin) = cache.load(&path).unwrap();
+        assert_eq!(
+            (scene::describe(&parsed).unique_triangles, parsed.meshes[0].positions.len()),
+            (871_414, 437_645)
+        );
+        assert!(matches!(origin, Origin::Kept(_)), "{origin}");
+        let (fetched, origin) = cache.load(&path).unwrap();
+        assert!(matches!(origin, Origin::Cache(_)), "{origin}");
+        assert_eq!(fingerprint(&parsed), fingerprint(&fetched));
+    }
+}
+
+#[test]
+fn robot_links_from_stl() {
+    let Some(folder) = real_path("robots/fanuc/meshes/collision") else { return };
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let links = files.filter(|path| path.extension().is_some_and(|extension| extension == "stl"));
+    let triangles = links.map(|path| scene::describe(&scene::load(path).unwrap()).unique_triangles);
+    assert_eq!(triangles.sum::<usize>(), 6_934);
 }

@@ -11,7 +11,7 @@ use crate::machine::simulated::{Model, ModelError};
 use crate::machine::threads::TeamSettings;
 use crate::machine::{Machine, Simulated, Threads};
 use crate::record::THREADS;
-use crate::scene::{self, CameraPath, PATHS, Scene};
+use crate::scene::{self, Cache, CameraPath, Origin, PATHS, Scene};
 use crate::scheme::tree::SCHEMES;
 use crate::structure::{AabbTree, SkipTree};
 use std::collections::HashMap;
@@ -201,10 +201,16 @@ const SPIN: Duration = Duration::from_millis(20);
 /// # Errors
 /// There is none of that name; the file cannot be read or is not what it should be.
 pub(super) fn scene(name: &str) -> Result<Scene, MeasureError> {
+    read_scene(name).map(|(scene, _)| scene)
+}
+
+/// As [`scene`], with where a file's was read from.
+pub(super) fn read_scene(name: &str) -> Result<(Scene, Option<Origin>), MeasureError> {
     if name.contains(['.', '/', '\\']) {
-        scene::load(name).map_err(failed)
+        Cache::of_user().load(name).map(|(scene, origin)| (scene, Some(origin))).map_err(failed)
     } else {
-        scene::by_name(name).map_err(|error| MeasureError::Words(error.to_string()))
+        let scene = scene::by_name(name).map_err(|error| MeasureError::Words(error.to_string()))?;
+        Ok((scene, None))
     }
 }
 

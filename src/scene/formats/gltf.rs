@@ -3,28 +3,28 @@
 //! points and lines have no surface and are left out. Materials, skins, morphs and animation are not
 //! read. Quantised, sparse or compressed vertices are refused.
 
-use std::path::Path;
+use std::collections::HashMap;
 
 use glam::{Affine3A, Mat4, Vec3};
 use gltf::mesh::Mode;
 
-use super::super::{Mesh, Scene, SceneError, error};
+use super::super::source::Source;
+use super::super::{Mesh, Scene, SceneError};
 use super::gltf_buffers::Buffers;
 
 /// Reads the default scene of a document, or its first, or, if it declares none, all its nodes.
-pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
-    let file = &path.display().to_string();
-    let bytes = error::read(path)?;
-    check_header(file, &bytes)?;
+pub(super) fn load(source: &Source) -> Result<Scene, SceneError> {
+    let (file, bytes) = (&source.file, &source.bytes);
+    check_header(file, bytes)?;
     let invalid = |error: gltf::Error| {
         let found = error.to_string();
         SceneError::malformed(file, "document", found.trim_end_matches(';'), "a valid glTF 2.0 file")
     };
-    let gltf = gltf::Gltf::from_slice_without_validation(&bytes).map_err(invalid)?;
+    let gltf = gltf::Gltf::from_slice_without_validation(bytes).map_err(invalid)?;
     let json = gltf.document.into_json();
     check_positions(file, &json)?;
     let document = gltf::Document::from_json(json).map_err(invalid)?;
-    let buffers = Buffers::read(file, path, &document, gltf.blob)?;
+    let buffers = Buffers::read(source, &document, gltf.blob)?;
     let mut scene = Scene::new(file);
     for mesh in document.meshes() {
         scene.meshes.push(read_mesh(file, &buffers, &mesh)?);
@@ -69,6 +69,8 @@ fn check_positions(file: &str, json: &gltf::json::Root) -> Result<(), SceneError
 
 fn read_mesh(file: &str, buffers: &Buffers<'_>, mesh: &gltf::Mesh<'_>) -> Result<Mesh, SceneError> {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    // Primitives often share their vertices, one for each material.
+    let mut first_of: HashMap<usize, (u32, usize)> = HashMap::new();
     for primitive in mesh.primitives() {
         let place = || {
             format!("mesh {} {:?} primitive {}", mesh.index(), mesh.name().unwrap_or(""), primitive.index())
@@ -79,14 +81,22 @@ fn read_mesh(file: &str, buffers: &Buffers<'_>, mesh: &gltf::Mesh<'_>) -> Result
         let accessor = primitive
             .get(&gltf::Semantic::Positions)
             .ok_or_else(|| SceneError::malformed(file, place(), "no POSITION", "one"))?;
-        let first = positions.len() as u32;
-        let vertices = buffers.positions(&accessor)?;
+        let (first, count) = match first_of.get(&accessor.index()) {
+            Some(shared) => *shared,
+            None => {
+                let vertices = buffers.positions(&accessor)?;
+                let placed = (positions.len() as u32, vertices.len());
+                positions.extend(vertices.into_iter().map(Vec3::from));
+                first_of.insert(accessor.index(), placed);
+                placed
+            }
+        };
         let indices = match primitive.indices() {
             Some(accessor) => buffers.indices(&accessor)?,
-            None => (0..vertices.len() as u32).collect(),
+            None => (0..count as u32).collect(),
         };
-        if let Some(index) = indices.iter().find(|index| **index as usize >= vertices.len()) {
-            let expected = format!("indices below {}", vertices.len());
+        if let Some(index) = indices.iter().find(|index| **index as usize >= count) {
+            let expected = format!("indices below {count}");
             return Err(SceneError::malformed(file, place(), format!("vertex index {index}"), expected));
         }
         if primitive.mode() == Mode::Triangles && indices.len() % 3 != 0 {
@@ -94,7 +104,6 @@ fn read_mesh(file: &str, buffers: &Buffers<'_>, mesh: &gltf::Mesh<'_>) -> Result
             return Err(SceneError::malformed(file, place(), found, "a multiple of three"));
         }
         triangles.extend(assemble(primitive.mode(), &indices).map(|triangle| triangle.map(|i| i + first)));
-        positions.extend(vertices.into_iter().map(Vec3::from));
     }
     Ok(Mesh::new(mesh.name().unwrap_or(""), positions, triangles))
 }

@@ -1,27 +1,34 @@
 //! The bytes behind a glTF file, and numbers read out of them with every bound checked: the reader of
 //! crate `gltf` trusts counts and strides, and a damaged file would make it panic.
 
-use std::path::Path;
+use std::cell::Cell;
 
 use gltf::accessor::{DataType, Dimensions};
 
 use super::super::SceneError;
+use super::super::source::Source;
 use super::base64;
 
 /// The buffers of a document, by index.
 pub(super) struct Buffers<'a> {
     file: &'a str,
     data: Vec<Vec<u8>>,
+    /// Bytes that may still be taken out of them.
+    left: Cell<usize>,
 }
+
+/// How often over, on average, the bytes of a document may be taken out of it. Accessors may share
+/// buffers, and without a bound a small file could ask for any amount of memory.
+const MOST_TIMES: usize = 64;
 
 impl<'a> Buffers<'a> {
     /// Collects the buffers: the binary chunk, files beside the document, data URIs.
     pub(super) fn read(
-        file: &'a str,
-        path: &Path,
+        source: &'a Source,
         document: &gltf::Document,
         mut blob: Option<Vec<u8>>,
     ) -> Result<Self, SceneError> {
+        let file = &source.file;
         let mut data = Vec::new();
         for buffer in document.buffers() {
             let fail = |found: &str, expected: &str| {
@@ -39,7 +46,7 @@ impl<'a> Buffers<'a> {
                     None if uri.contains("://") => {
                         return Err(fail(&format!("the address {uri:?}"), "a file beside the document"));
                     }
-                    None => std::fs::read(path.with_file_name(unescape(uri))).map_err(|error| {
+                    None => source.neighbour(&unescape(uri)).map_err(|error| {
                         let found = format!("file {uri:?}, which cannot be read ({error})");
                         fail(&found, "a file beside the document")
                     })?,
@@ -51,7 +58,8 @@ impl<'a> Buffers<'a> {
             }
             data.push(bytes);
         }
-        Ok(Self { file, data })
+        let all = data.iter().map(Vec::len).sum::<usize>() + source.bytes.len();
+        Ok(Self { file, data, left: Cell::new(all.saturating_mul(MOST_TIMES)) })
     }
 
     /// The items of an accessor, each handed to `item` as its bytes.
@@ -81,6 +89,10 @@ impl<'a> Buffers<'a> {
             let found = format!("{count} items at a stride of {stride} bytes from {}", accessor.offset());
             return Err(fail(&found, &format!("no more than the view's {} bytes", bytes.len())));
         }
+        let left = self.left.get().checked_sub(count.saturating_mul(size)).ok_or_else(|| {
+            fail("accessors that overlap too much", &format!("each byte taken {MOST_TIMES} times at most"))
+        })?;
+        self.left.set(left);
         let start = |i: usize| accessor.offset() + i * stride;
         Ok((0..count).map(|i| item(&bytes[start(i)..start(i) + size])).collect())
     }

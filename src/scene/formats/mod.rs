@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::source::{Source, Stamp, format_of};
 use super::{Scene, SceneError};
 
 mod base64;
@@ -9,6 +10,11 @@ mod gltf;
 mod gltf_buffers;
 mod obj;
 mod obj_check;
+mod ply;
+mod ply_body;
+mod ply_header;
+mod stl;
+mod stl_text;
 
 /// A file format that scenes are read from.
 pub struct Format {
@@ -16,14 +22,17 @@ pub struct Format {
     pub extension: &'static str,
     /// What it is, in a few words.
     pub about: &'static str,
-    load: fn(&Path) -> Result<Scene, SceneError>,
+    load: fn(&Source) -> Result<Scene, SceneError>,
 }
 
-/// All formats.
+/// All formats. Each may be packed, with `.gz` after its extension. A reader that comes to read something
+/// otherwise than before needs a new version of the cache as well (`cache/layout.rs`).
 pub const FORMATS: &[Format] = &[
     Format { extension: "gltf", about: "glTF 2.0, buffers beside or inside", load: gltf::load },
     Format { extension: "glb", about: "glTF 2.0, binary", load: gltf::load },
     Format { extension: "obj", about: "Wavefront OBJ, geometry only", load: obj::load },
+    Format { extension: "ply", about: "Stanford PLY, text or binary, geometry only", load: ply::load },
+    Format { extension: "stl", about: "stereolithography, text or binary, welded", load: stl::load },
 ];
 
 /// Reads a scene from a file, in the format its extension says, and validates it. The scene is named
@@ -33,15 +42,25 @@ pub const FORMATS: &[Format] = &[
 /// [`SceneError`] if the extension is not known, the file cannot be read, or something in it is not
 /// right.
 pub fn load(path: impl AsRef<Path>) -> Result<Scene, SceneError> {
-    let path = path.as_ref();
-    let file = path.display().to_string();
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    read(path.as_ref()).map(|(scene, _)| scene)
+}
+
+/// As [`load`], with the stamps of the files it was read from, the scene's own first.
+pub(super) fn read(path: &Path) -> Result<(Scene, Vec<Stamp>), SceneError> {
+    let extension = format_of(path);
     let Some(format) = FORMATS.iter().find(|format| format.extension == extension) else {
+        let file = path.display().to_string();
         let known = FORMATS.iter().map(|format| format!(".{}", format.extension)).collect::<Vec<_>>();
         return Err(SceneError::UnknownFormat { file, extension, known: known.join(", ") });
     };
-    let mut scene = (format.load)(path)?;
-    scene.name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    scene.validate_as(&file)?;
-    Ok(scene)
+    let source = Source::open(path)?;
+    let mut scene = (format.load)(&source)?;
+    scene.name = name_of(path);
+    scene.validate_as(&source.file)?;
+    Ok((scene, source.into_stamps()))
+}
+
+/// What the scene in a file is called.
+pub(super) fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -7,14 +7,15 @@ use std::path::Path;
 
 use glam::{Affine3A, Vec3};
 
-use super::super::{Mesh, Scene, SceneError, error};
+use super::super::source::Source;
+use super::super::{Mesh, Scene, SceneError};
 use super::obj_check;
 
 /// Reads the objects and groups of a file.
-pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
-    let file = &path.display().to_string();
-    let text = error::read_text(path)?;
-    obj_check::check(file, &text)?;
+pub(super) fn load(source: &Source) -> Result<Scene, SceneError> {
+    let file = &source.file;
+    let text = source.text()?;
+    obj_check::check(file, text)?;
     let options = tobj::LoadOptions {
         triangulate: true,
         ignore_points: true,
@@ -25,8 +26,7 @@ pub(super) fn load(path: &Path) -> Result<Scene, SceneError> {
     let (models, _) = tobj::load_obj_buf(&mut text.as_bytes(), &options, no_materials)
         .map_err(|error| SceneError::malformed(file, "document", error.to_string(), "a valid OBJ file"))?;
     let mut scene = Scene::new(file);
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let root = scene.add_node(None, stem, Affine3A::IDENTITY, None);
+    let root = scene.add_node(None, source.stem(), Affine3A::IDENTITY, None);
     for model in models.into_iter().filter(|model| !model.mesh.indices.is_empty()) {
         let positions = model.mesh.positions.chunks_exact(3).map(Vec3::from_slice).collect();
         let triangles = model.mesh.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();

@@ -36,6 +36,8 @@ fn faults_are_named_with_their_line() {
         ("v 0 0 0\nf\n", "line 2: no corners"),
         ("v 0 0 0 0\n", "line 1: w is 0"),
         ("v 0 0 0 1 1\n", "line 1: 5 numbers"),
+        ("v 0 0 0\nv 0 0 1 .5 .5 .5\n", "line 2: a vertex with a colour; expected a colour for all"),
+        ("v 0 0 0 1 1 1\nv 0 0 1 1\n", "line 2: a vertex without a colour"),
     ] {
         let error = read(text.as_bytes()).unwrap_err();
         assert!(error.contains("model.obj: ") && error.contains(part), "{error:?} lacks {part:?}");

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use glam::Vec3;
 
-use super::super::{SceneError, error};
+use super::super::SceneError;
+use super::super::source::Source;
 use super::{ASPECT, CameraPath};
 use crate::geometry::{Camera, Lens};
 
@@ -20,25 +21,24 @@ impl CameraPath {
     /// [`SceneError`] naming file, line and column if the file cannot be read, a number is missing or
     /// is none, or a frame has no direction: the point looked at is the eye, or up lies along the gaze.
     pub fn read_csv(path: impl AsRef<Path>, near: f32, far: f32) -> Result<Self, SceneError> {
-        let file = path.as_ref().display().to_string();
-        let text = error::read_text(path.as_ref())?;
-        // Spreadsheets begin a file with a byte order mark.
-        let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
+        let source = Source::open(path.as_ref())?;
+        let file = &source.file;
+        let mut lines = source.text()?.lines().enumerate();
         let header = lines.next().map_or("", |(_, line)| line.trim_end());
         if header != HEADER {
-            return Err(SceneError::malformed(&file, "line 1", format!("{header:?}"), HEADER));
+            return Err(SceneError::malformed(file, "line 1", format!("{header:?}"), HEADER));
         }
         let mut frames = Vec::new();
         for (index, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
             let place = format!("line {}", index + 1);
             let numbers = numbers(line).map_err(|(column, found)| {
-                SceneError::malformed(&file, format!("{place}, {column}"), found, "a finite number")
+                SceneError::malformed(file, format!("{place}, {column}"), found, "a finite number")
             })?;
             let [ex, ey, ez, lx, ly, lz, ux, uy, uz, degrees] = numbers;
             let lens = Lens::Symmetric { fov_y: f64::from(degrees).to_radians() as f32, aspect: ASPECT };
             let (eye, look, up) = (Vec3::new(ex, ey, ez), Vec3::new(lx, ly, lz), Vec3::new(ux, uy, uz));
             let camera = Camera::look_at(eye, look, up, lens, near, far).map_err(|error| {
-                SceneError::malformed(&file, place, error.to_string(), "a camera that can see")
+                SceneError::malformed(file, place, error.to_string(), "a camera that can see")
             })?;
             frames.push(camera);
         }

@@ -11,6 +11,7 @@ mod graph;
 mod names;
 mod path;
 mod random;
+mod repeat;
 mod validate;
 
 pub use describe::{Description, describe};

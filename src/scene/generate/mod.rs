@@ -2,6 +2,7 @@
 
 use super::{Scene, SceneError, names};
 
+mod dragons;
 mod factory;
 mod shapes;
 
@@ -39,7 +40,17 @@ pub struct Aisles {
 }
 
 /// All generators.
-pub const GENERATORS: &[Generator] = &[factory::LARGE, factory::MEDIUM, factory::SMALL];
+pub const GENERATORS: &[Generator] = &[
+    factory::LARGE,
+    factory::MEDIUM,
+    factory::SMALL,
+    dragons::ONE,
+    dragons::SPLIT,
+    dragons::PACKED_SIXTY,
+    dragons::POMPEII,
+    dragons::SPOKED,
+    dragons::OUTLIER,
+];
 
 /// Makes a scene by its name.
 ///

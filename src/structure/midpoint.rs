@@ -147,21 +147,27 @@ struct Segments {
 }
 
 impl Segments {
-    fn joined(self) -> Parts {
+    fn joined(mut self) -> Parts {
+        let (medians, depth) = (self.medians, self.depth);
+        if self.pieces.len() == 1 {
+            return Parts { nodes: self.pieces.remove(0), medians, depth };
+        }
         let mut nodes = Vec::with_capacity(self.nodes as usize);
         for piece in self.pieces {
             let base = nodes.len() as u32;
             nodes.extend(piece.into_iter().map(|part| Part { end: part.end + base, ..part }));
         }
-        Parts { nodes, medians: self.medians, depth: self.depth }
+        Parts { nodes, medians, depth }
     }
 }
 
 impl<I: Items> Division<'_, I> {
     /// Divides a part that many threads may share.
     fn part(&self, items: &mut [I::Item], spare: &mut [I::Item], root: Root) -> Segments {
-        if items.len() <= GRAIN.max(self.most) {
-            let mut alone = Alone { division: self, nodes: Vec::new(), medians: 0, depth: 0 };
+        if items.len() <= GRAIN.max(self.most) || rayon::current_num_threads() == 1 {
+            // As many as parts of three quarters of the limit make; there may be more.
+            let nodes = Vec::with_capacity(3 * (items.len() / self.most) + 1);
+            let mut alone = Alone { division: self, nodes, medians: 0, depth: 0 };
             alone.part(items, spare, root, 1);
             let Alone { nodes, medians, depth, .. } = alone;
             return Segments { nodes: nodes.len() as u32, pieces: vec![nodes], medians, depth };

@@ -127,3 +127,7 @@ impl Items for Triangles<'_> {
         Place { low: a.min(b).min(c), high: a.max(b).max(c), middle: (a + b + c) * (1.0 / 3.0) }
     }
 }
+
+#[cfg(test)]
+#[path = "split_tests.rs"]
+mod tests;

@@ -36,6 +36,18 @@ pub struct Counts {
     pub pixels_passed: u64,
 }
 
+impl std::ops::AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.draw_calls += other.draw_calls;
+        self.vertices += other.vertices;
+        self.triangles += other.triangles;
+        self.outside += other.outside;
+        self.set_up += other.set_up;
+        self.pixel_tests += other.pixel_tests;
+        self.pixels_passed += other.pixels_passed;
+    }
+}
+
 /// A scene and its leaves, ready to be drawn.
 pub struct Drawing<'a> {
     scene: &'a Scene,

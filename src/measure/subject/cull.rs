@@ -48,7 +48,7 @@ pub(super) fn open(
         pause: Duration::from_secs_f64(settings.number("pause_ms", 0.0, 0.0..=10_000.0)? / 1000.0),
     };
     settings.finish(cell)?;
-    let stage = cache.stage(&cell.scene, options)?;
+    let stage = cache.stage(cell, options)?;
     if cell.machine == THREADS {
         let team = cache.team(cell.processors)?;
         Ok(Box::new(CullSubject::<_, Threads>::new(cell, team, stage, asked, Costs::default())?))

@@ -1,6 +1,8 @@
 //! What is measured: the way from a cell to the job, scheme and machine it names.
 
+mod copies;
 mod cull;
+mod draw;
 mod settings;
 mod tree;
 
@@ -79,7 +81,7 @@ pub struct Known {
 
 /// The jobs, by word: how each is made ready. The list is the table of contents.
 type OpenJob = fn(&Cell, &Options, &mut SubjectCache) -> Result<Box<dyn Subject>, MeasureError>;
-const JOBS: &[(&str, OpenJob)] = &[("cull", cull::open), ("tree", tree::open)];
+const JOBS: &[(&str, OpenJob)] = &[("cull", cull::open), ("draw", draw::open), ("tree", tree::open)];
 
 impl Known {
     /// All that this version knows.
@@ -103,10 +105,12 @@ pub struct SubjectCache {
     scenes: HashMap<String, Rc<Stage>>,
     teams: HashMap<u32, Rc<Threads>>,
     models: HashMap<String, Model>,
+    drawings: draw::Drawings,
 }
 
-/// A scene ready to be gone through: its tree and a camera for each frame.
+/// A scene ready to be gone through: it, its tree and a camera for each frame.
 struct Stage {
+    scene: scene::Scene,
     tree: SkipTree,
     cameras: Vec<Camera>,
 }
@@ -121,12 +125,12 @@ impl SubjectCache {
         self.models.insert(name.to_owned(), model);
     }
 
-    fn stage(&mut self, name: &str, options: &Options) -> Result<Rc<Stage>, MeasureError> {
-        let key = format!("{name} {options:?}");
+    fn stage(&mut self, cell: &Cell, options: &Options) -> Result<Rc<Stage>, MeasureError> {
+        let key = stage_key(cell, options);
         if let Some(stage) = self.scenes.get(&key) {
             return Ok(stage.clone());
         }
-        let scene = scene(name)?;
+        let scene = copies::scene(cell)?;
         let path = match &options.path {
             Some(file) => {
                 let size = scene.bounds().size().length().max(1e-3);
@@ -138,12 +142,12 @@ impl SubjectCache {
         if path.frames.is_empty() {
             return Err(MeasureError::Failed(match &options.path {
                 Some(file) => format!("{}: the camera path has no frames", file.display()),
-                None => format!("scene `{name}`: nothing in it that a camera path could lead past"),
+                None => format!("scene `{}`: nothing in it that a camera path could lead past", cell.scene),
             }));
         }
         let tree = SkipTree::build(&AabbTree::build(&scene));
         tree.validate().map_err(failed)?;
-        let stage = Rc::new(Stage { tree, cameras: path.frames });
+        let stage = Rc::new(Stage { scene, tree, cameras: path.frames });
         self.scenes.insert(key, stage.clone());
         Ok(stage)
     }
@@ -157,6 +161,12 @@ impl SubjectCache {
         self.teams.insert(processors, team.clone());
         Ok(team)
     }
+}
+
+/// What tells one stage from another.
+fn stage_key(cell: &Cell, options: &Options) -> String {
+    let of_scene: Vec<_> = cell.settings.iter().filter(|(key, _)| key.starts_with("scene.")).collect();
+    format!("{} {of_scene:?} {options:?}", cell.scene)
 }
 
 /// The frames asked for of a recorded path.

@@ -69,6 +69,21 @@ impl JobSettings {
         })
     }
 
+    /// Anything that can be read off its words; `expected` says what those are.
+    pub(super) fn read<T>(
+        &self,
+        key: &'static str,
+        default: T,
+        expected: &str,
+        read: impl Fn(&str) -> Option<T>,
+    ) -> Result<T, MeasureError> {
+        self.known.borrow_mut().push(key);
+        let Some(value) = self.values.get(key) else { return Ok(default) };
+        read(value).ok_or_else(|| {
+            MeasureError::Setting(format!("setting `{}` is `{value}`, expected {expected}", whole(key)))
+        })
+    }
+
     /// Refuses settings that nobody asked for.
     pub(super) fn finish(&self, cell: &Cell) -> Result<(), MeasureError> {
         let known = self.known.borrow();

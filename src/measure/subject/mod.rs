@@ -1,9 +1,9 @@
 //! What is measured: the way from a cell to the job, scheme and machine it names.
 
-mod copies;
 mod cull;
 mod draw;
 mod settings;
+mod staging;
 mod tree;
 
 use super::trace::Nearest;
@@ -130,14 +130,14 @@ impl SubjectCache {
         if let Some(stage) = self.scenes.get(&key) {
             return Ok(stage.clone());
         }
-        let scene = copies::scene(cell)?;
+        let scene = staging::scene(cell)?;
         let path = match &options.path {
             Some(file) => {
                 let size = scene.bounds().size().length().max(1e-3);
                 let path = CameraPath::read_csv(file, NEAR_SHARE * size, FAR_SHARE * size).map_err(failed)?;
                 first_frames(path, file, options.path_frames)?
             }
-            None => CameraPath::for_scene(&scene, options.frames as usize, options.seed),
+            None => staging::path(cell, &scene, options)?,
         };
         if path.frames.is_empty() {
             return Err(MeasureError::Failed(match &options.path {

@@ -8,6 +8,7 @@ pub mod culling;
 mod frustum;
 pub mod oracle;
 mod plane;
+pub mod raster;
 pub mod volume;
 
 pub use aabb::Aabb;

@@ -12,6 +12,7 @@ mod graph;
 mod names;
 mod path;
 mod random;
+mod repeat;
 mod source;
 mod validate;
 

@@ -1,12 +1,19 @@
 //! What is built over a scene: trees of boxes, and what is to be said of their shape.
 
 mod aabb_tree;
+mod midpoint;
+mod midpoint_tree;
+mod placed_leaves;
 mod skip_tree;
+mod split;
 mod statistics;
 mod volumes;
 
 pub use aabb_tree::{AabbTree, AabbTreeNode};
+pub use midpoint_tree::{MidpointStatistics, Object, midpoint_tree};
+pub use placed_leaves::{PlacedLeaf, PlacedLeaves};
 pub use skip_tree::{SkipNode, SkipTree};
+pub use split::{Leaf, Split, SplitError};
 pub use statistics::TreeStatistics;
 pub use volumes::{VOLUME_KINDS, VolumeKind, Volumes};
 

@@ -13,7 +13,8 @@ pub struct SkipNode {
     /// Triangles of the mesh placed at this very node; 0 if there is none. They count as soon as the
     /// node is not outside, whether or not it has children.
     pub triangles: u32,
-    /// The scene node this one stands for, or [`super::NO_SOURCE`].
+    /// What this one stands for: the scene node, or the object of a tree over objects; [`super::NO_SOURCE`]
+    /// for nothing.
     pub source: u32,
 }
 

@@ -3,6 +3,7 @@
 mod advise;
 mod command_line;
 mod compare;
+mod draw;
 mod experiment;
 mod house_rules;
 mod loaders;

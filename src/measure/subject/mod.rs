@@ -1,7 +1,9 @@
 //! What is measured: the way from a cell to the job, scheme and machine it names.
 
 mod cull;
+mod draw;
 mod settings;
+mod staging;
 mod tree;
 
 use super::trace::Nearest;
@@ -11,7 +13,7 @@ use crate::machine::simulated::{Model, ModelError};
 use crate::machine::threads::TeamSettings;
 use crate::machine::{Machine, Simulated, Threads};
 use crate::record::THREADS;
-use crate::scene::{self, Cache, CameraPath, Origin, PATHS, Scene};
+use crate::scene::{self, Cache, CameraPath, Origin, Scene};
 use crate::scheme::tree::SCHEMES;
 use crate::structure::{AabbTree, SkipTree};
 use std::collections::HashMap;
@@ -79,7 +81,7 @@ pub struct Known {
 
 /// The jobs, by word: how each is made ready. The list is the table of contents.
 type OpenJob = fn(&Cell, &Options, &mut SubjectCache) -> Result<Box<dyn Subject>, MeasureError>;
-const JOBS: &[(&str, OpenJob)] = &[("cull", cull::open), ("tree", tree::open)];
+const JOBS: &[(&str, OpenJob)] = &[("cull", cull::open), ("draw", draw::open), ("tree", tree::open)];
 
 impl Known {
     /// All that this version knows.
@@ -103,9 +105,10 @@ pub struct SubjectCache {
     scenes: HashMap<String, Rc<Stage>>,
     teams: HashMap<u32, Rc<Threads>>,
     models: HashMap<String, Model>,
+    drawings: draw::Drawings,
 }
 
-/// A scene ready to be gone through: its tree and a camera for each frame.
+/// A scene ready to be gone through: it, its tree and a camera for each frame.
 struct Stage {
     scene: Scene,
     tree: SkipTree,
@@ -122,15 +125,14 @@ impl SubjectCache {
         self.models.insert(name.to_owned(), model);
     }
 
-    /// The stage of a cell. Settings: `scene.path`, the kind of camera path, one of [`PATHS`].
+    /// The stage of a cell.
     fn stage(&mut self, cell: &Cell, options: &Options) -> Result<Rc<Stage>, MeasureError> {
-        let name = &cell.scene;
         let settings = settings::of_scene(cell)?;
-        let key = format!("{name} {settings:?} {options:?}");
+        let key = stage_key(cell, options);
         if let Some(stage) = self.scenes.get(&key) {
             return Ok(stage.clone());
         }
-        let scene = scene(name)?;
+        let scene = staging::scene(cell)?;
         let path = match &options.path {
             Some(file) if settings.contains_key("path") => {
                 let message =
@@ -142,12 +144,14 @@ impl SubjectCache {
                 let path = CameraPath::read_csv(file, NEAR_SHARE * size, FAR_SHARE * size).map_err(failed)?;
                 first_frames(path, file, options.path_frames)?
             }
-            None => made_path(&scene, settings.get("path"), options)?,
+            None => staging::path(cell, &scene, options)?,
         };
         if path.frames.is_empty() {
             return Err(MeasureError::Failed(match &options.path {
                 Some(file) => format!("{}: the camera path has no frames", file.display()),
-                None => format!("scene `{name}`: nothing in it that such a camera path could lead past"),
+                None => {
+                    format!("scene `{}`: nothing in it that such a camera path could lead past", cell.scene)
+                }
             }));
         }
         let tree = SkipTree::build(&AabbTree::build(&scene));
@@ -168,15 +172,10 @@ impl SubjectCache {
     }
 }
 
-/// A path of the kind asked for, or of the scene's own.
-fn made_path(scene: &Scene, kind: Option<&String>, options: &Options) -> Result<CameraPath, MeasureError> {
-    let frames = options.frames as usize;
-    let Some(kind) = kind else { return Ok(CameraPath::for_scene(scene, frames, options.seed)) };
-    let known = PATHS.iter().find(|known| known.name == kind).ok_or_else(|| {
-        let words = PATHS.iter().map(|known| known.name).collect::<Vec<_>>().join(", ");
-        MeasureError::Setting(format!("setting `scene.path` is `{kind}`, expected one of: {words}"))
-    })?;
-    Ok(known.make(scene, frames, options.seed))
+/// What tells one stage from another.
+fn stage_key(cell: &Cell, options: &Options) -> String {
+    let of_scene: Vec<_> = cell.settings.iter().filter(|(key, _)| key.starts_with("scene.")).collect();
+    format!("{} {of_scene:?} {options:?}", cell.scene)
 }
 
 /// The frames asked for of a recorded path.

@@ -82,6 +82,21 @@ impl JobSettings {
         })
     }
 
+    /// Anything that can be read off its words; `expected` says what those are.
+    pub(super) fn read<T>(
+        &self,
+        key: &'static str,
+        default: T,
+        expected: &str,
+        read: impl Fn(&str) -> Option<T>,
+    ) -> Result<T, MeasureError> {
+        self.known.borrow_mut().push(key);
+        let Some(value) = self.values.get(key) else { return Ok(default) };
+        read(value).ok_or_else(|| {
+            MeasureError::Setting(format!("setting `{}` is `{value}`, expected {expected}", whole(key)))
+        })
+    }
+
     /// Refuses settings that nobody asked for.
     pub(super) fn finish(&self, cell: &Cell) -> Result<(), MeasureError> {
         let known = self.known.borrow();
@@ -113,7 +128,7 @@ fn part<'a>(cell: &'a Cell, prefix: &str) -> impl Iterator<Item = (String, Strin
 }
 
 /// What can be set about a cell's scene.
-const OF_THE_SCENE: [&str; 1] = ["path"];
+const OF_THE_SCENE: [&str; 5] = ["path", "copies", "spacing", "fov", "off_axis"];
 
 /// The settings `scene.*` of a cell, by their bare names.
 ///

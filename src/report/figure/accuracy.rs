@@ -1,10 +1,10 @@
 //! Speed against accuracy, one kind of accuracy at a time, with the Pareto front.
 //!
 //! A panel holds cells that are alternatives: one machine, job and scene. What is given up in *structure* is more
-//! work for the same answer, so that cells stand together only where their answer, the nodes found visible, is the
-//! same; where rows do not tell the answer, only those that share their common settings do. Where what is counted is
-//! by how much an answer is too large, all cells of the same scene and camera path stand together. Where no cell
-//! gives up more than another there is no choice to show, and nothing is drawn.
+//! work for the same answer, so that cells stand together only where their answer, the nodes found visible or the
+//! pixels covered, is the same; where rows do not tell the answer, only those that share their common settings do.
+//! Where what is counted is by how much an answer is too large, all cells of the same scene and camera path stand
+//! together. Where no cell gives up more than another there is no choice to show, and nothing is drawn.
 
 use super::time::unit;
 use super::words::{bare, machine, number};
@@ -45,7 +45,9 @@ struct Choice<'a> {
 
 fn figure(material: &Material<'_>, kind: AccuracyKind) -> Option<Figure> {
     let rows = &material.run.rows;
-    let (times, answers) = (medians(rows, "total_time"), medians(rows, "nodes_visible"));
+    let times = medians(rows, "total_time");
+    let mut answers = medians(rows, "nodes_visible");
+    answers.extend(medians(rows, "pixels_covered"));
     let mut entries: Vec<(String, Entry)> = Vec::new();
     let mut panels = Vec::new();
     // Where nothing is shared out, settings have looks of their own instead of the one scheme.

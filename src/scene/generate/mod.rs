@@ -2,6 +2,7 @@
 
 use super::{Scene, SceneError, names};
 
+mod dragons;
 mod factory;
 mod shapes;
 
@@ -39,8 +40,20 @@ pub struct Aisles {
 }
 
 /// All generators.
-pub const GENERATORS: &[Generator] =
-    &[factory::LARGE, factory::MEDIUM, factory::SMALL, factory::MODEL_1, factory::MODEL_2, factory::MODEL_3];
+pub const GENERATORS: &[Generator] = &[
+    factory::LARGE,
+    factory::MEDIUM,
+    factory::SMALL,
+    factory::MODEL_1,
+    factory::MODEL_2,
+    factory::MODEL_3,
+    dragons::ONE,
+    dragons::SPLIT,
+    dragons::PACKED_SIXTY,
+    dragons::POMPEII,
+    dragons::SPOKED,
+    dragons::OUTLIER,
+];
 
 /// Makes a scene by its name.
 ///

@@ -15,6 +15,7 @@ mod rotation;
 mod translation;
 mod walk;
 mod waves;
+mod whole;
 
 pub use bezier::Waypoint;
 
@@ -43,8 +44,15 @@ impl PathKind {
 }
 
 /// All kinds of path that can be made.
-pub const PATHS: &[PathKind] =
-    &[walk::WALK, both::BOTH, rotation::ROTATION, translation::TRANSLATION, fly::FLY, bezier::BEZIER];
+pub const PATHS: &[PathKind] = &[
+    walk::WALK,
+    both::BOTH,
+    rotation::ROTATION,
+    translation::TRANSLATION,
+    fly::FLY,
+    bezier::BEZIER,
+    whole::WHOLE,
+];
 
 /// Width over height of the picture, which recordings do not hold.
 const ASPECT: f32 = 4.0 / 3.0;
@@ -84,8 +92,8 @@ mod tests {
         let scene = by_name("factory-small").unwrap();
         for kind in PATHS {
             let path = kind.make(&scene, 40, 3);
-            assert_eq!((path.frames.len(), &path), (40, &kind.make(&scene, 40, 3)), "{}", kind.name);
-            assert_ne!(path, kind.make(&scene, 40, 4), "{}", kind.name);
+            assert!(path.frames.len() == 40 && path == kind.make(&scene, 40, 3), "{}", kind.name);
+            assert!(path != kind.make(&scene, 40, 4), "{}", kind.name);
             let bits = |frame: &Camera| [frame.eye, frame.forward].map(|v| v.to_array().map(f32::to_bits));
             let seen: HashSet<_> = path.frames.iter().map(bits).collect();
             assert!(kind.name == "walk" || seen.len() == 40, "{}: each frame is another", kind.name);

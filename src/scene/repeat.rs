@@ -1,0 +1,67 @@
+//! A scene many times over.
+
+use glam::{Affine3A, Vec3};
+
+use super::Scene;
+
+impl Scene {
+    /// So many copies of the scene on a level grid as near to a square as can be, row after row. They
+    /// share their meshes. `spacing` is the way from copy to copy in units of the scene's greater extent
+    /// along x and z: at 1 they touch. It goes by another name, as it is another scene; one copy is the
+    /// scene itself.
+    pub fn repeated(self, copies: u32, spacing: f32) -> Self {
+        if copies == 1 {
+            return self;
+        }
+        let size = self.bounds().size();
+        let (pitch, columns) = (size.x.max(size.z) * spacing, f64::from(copies).sqrt().ceil() as u32);
+        let mut scene = Self::new(format!("{copies} x {}", self.name));
+        for copy in 0..copies {
+            let place = Vec3::new((copy % columns) as f32, 0.0, (copy / columns) as f32) * pitch;
+            let root = scene.add_node(None, format!("copy {copy}"), Affine3A::from_translation(place), None);
+            let first = scene.nodes.len() as u32;
+            scene.nodes[root as usize].children = self.roots.iter().map(|node| node + first).collect();
+            scene.nodes.extend(self.nodes.iter().map(|node| {
+                let mut node = node.clone();
+                node.parent = Some(node.parent.map_or(root, |parent| parent + first));
+                node.children.iter_mut().for_each(|child| *child += first);
+                node
+            }));
+        }
+        scene.meshes = self.meshes;
+        scene
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Mesh, by_name};
+    use super::*;
+
+    #[test]
+    fn copies_stand_apart_and_share_meshes() {
+        let scene = by_name("factory-small").unwrap();
+        let (nodes, triangles, bounds) = (scene.nodes.len(), scene.instances().1, scene.bounds());
+        for copies in [2, 3, 7] {
+            let many = scene.clone().repeated(copies, 2.0);
+            many.validate().unwrap();
+            let count = copies as usize;
+            assert_eq!((many.nodes.len(), many.instances().1), (count * (nodes + 1), count * triangles));
+            assert_eq!((many.meshes.len(), many.roots.len()), (scene.meshes.len(), count));
+            let columns = if copies == 7 { 3 } else { 2 };
+            let expected = bounds.size().x.max(bounds.size().z) * (1.0 + 2.0 * (columns - 1) as f32);
+            assert!((many.bounds().size().x - expected).abs() < 1e-3 * expected, "{copies}");
+        }
+        assert_eq!(scene.clone().repeated(1, 2.0).name, "factory-small");
+        assert_eq!(scene.repeated(7, 2.0).name, "7 x factory-small");
+    }
+
+    #[test]
+    fn nothing_can_be_repeated_too() {
+        assert_eq!(Scene::new("nothing").repeated(3, 1.0).nodes.len(), 3);
+        let mut point = Scene::new("point");
+        let mesh = point.add_mesh(Mesh::new("point", vec![Vec3::ONE; 3], vec![[0, 1, 2]]));
+        point.add_node(None, "point", Affine3A::IDENTITY, Some(mesh));
+        point.repeated(4, 2.0).validate().unwrap();
+    }
+}

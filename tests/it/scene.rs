@@ -66,6 +66,12 @@ fn generated_scenes_never_change() {
         ("factory-large", 0xcbac75a0bd568767),
         ("factory-medium", 0x487f3e3237751212),
         ("factory-small", 0xac230c9066bfe6d1),
+        ("dragon", 0xd9f5de484b23d1e7),
+        ("dragons-split", 0x90f8fbc7a3ca966f),
+        ("dragons-packed", 0x9de7802c93f02783),
+        ("pompeii", 0xc2c0904729a42bc2),
+        ("equal-centroids", 0xef050c113d07ec29),
+        ("far-outlier", 0xf587e573ad9c701c),
     ];
     assert_eq!(prints, expected);
 }

@@ -55,8 +55,7 @@ impl Clipped {
 
     /// The triangles, on the grid of pixels.
     pub fn triangles(&self) -> impl Iterator<Item = [Corner; 3]> {
-        let corners = self.corners.map(|corner| Corner::of(&corner));
-        (2..self.count).map(move |last| [corners[0], corners[last - 1], corners[last]])
+        (2..self.count).map(|last| [0, last - 1, last].map(|corner| Corner::of(&self.corners[corner])))
     }
 }
 

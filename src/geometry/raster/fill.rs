@@ -21,8 +21,10 @@ impl Corner {
     /// Where a point before the lens falls; it must be clipped.
     pub(super) fn of(seen: &Seen) -> Self {
         let nearness = 1.0 / seen.depth;
-        // The cast holds what lies beyond the guard band, which the last corner cut may by a rounding.
-        let snap = |at: f64| (at * nearness * STEPS as f64).round() as i64;
+        // Rounded by cutting a positive number short, half up: quicker than to the nearest. The cast holds what
+        // lies beyond the guard band, which the last corner cut may by a rounding.
+        let (steps, shift) = (STEPS as f64, 2 * STEPS * i64::from(GUARD));
+        let snap = |at: f64| (at * nearness * steps + shift as f64 + 0.5) as i64 - shift;
         Self { place: [snap(seen.x), snap(seen.y)], nearness }
     }
 }

@@ -1,4 +1,5 @@
 //! Jobs: work for a scheme, and the serial oracle each result is held against.
 
 pub mod cull;
+pub mod cull_boxes;
 pub mod synthetic;

@@ -4,24 +4,30 @@
 //! runs seldom see. A schedule of real threads cannot be repeated, but what was asked of it can: each
 //! run has a seed. A run that never ends shows in a progress that stops.
 
+mod cull_kernels;
 mod primitives;
+mod tiles;
 mod trees;
 
 use crate::machine::{RunError, Threads};
 use crate::scene::SplitMix64;
-use crate::scheme::tree::SCHEMES;
+use crate::scheme::{About, tiles as tile_schemes, tree as tree_schemes};
 use std::time::{Duration, Instant};
 
 /// The primitives that can be stressed by themselves.
-const PRIMITIVES: &[(&str, primitives::Check)] =
-    &[("in_queue", primitives::in_queue), ("lock", primitives::lock), ("quiescence", primitives::quiescence)];
+const PRIMITIVES: &[(&str, primitives::Check)] = &[
+    ("in_queue", primitives::in_queue),
+    ("lock", primitives::lock),
+    ("quiescence", primitives::quiescence),
+    ("cull_kernels", cull_kernels::check),
+];
 
 /// What was run, and what went wrong.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct StressReport {
     /// Runs made.
     pub runs: u64,
-    /// Nodes visited, tasks passed on, or turns taken in these runs.
+    /// Nodes visited, tasks passed on, turns taken, or boxes tested in these runs.
     pub nodes: u64,
     /// Invariants found broken. Stressing ends at the first of them.
     pub violations: Vec<Violation>,
@@ -56,7 +62,16 @@ pub enum StressError {
 
 /// Everything that can be stressed, besides `all`.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    PRIMITIVES.iter().map(|(name, _)| *name).chain(SCHEMES.iter().map(|scheme| scheme.name))
+    let schemes = tree_schemes::SCHEMES
+        .iter()
+        .chain(tile_schemes::SCHEMES.iter().filter(|scheme| is_tiles(scheme.name)));
+    PRIMITIVES.iter().map(|(name, _)| *name).chain(schemes.map(|scheme| scheme.name))
+}
+
+/// Whether a name is that of a tile scheme; one that exists for trees too (`serial`) is taken for a tree's.
+fn is_tiles(name: &str) -> bool {
+    let is_in = |schemes: &[About]| schemes.iter().any(|scheme| scheme.name == name);
+    is_in(tile_schemes::SCHEMES) && !is_in(tree_schemes::SCHEMES)
 }
 
 /// Stresses the scheme or primitive called `what`, or `all` in turn, on up to `processors` threads until
@@ -107,6 +122,7 @@ pub fn stress_from(
             let primitive = PRIMITIVES.iter().find(|(primitive, _)| *primitive == name);
             let outcome = match primitive {
                 Some((_, check)) => check(&team, processors, &mut random),
+                None if is_tiles(name) => tiles::check(name, &team, processors, &mut random),
                 None => trees::check(name, &team, processors, &mut random),
             };
             report.runs += 1;

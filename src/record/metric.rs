@@ -108,6 +108,16 @@ pub const METRICS: &[Metric] = {
         declare("nodes_visited", "nodes", Lower, "Nodes of the structure the job looked at.")
             .gives_up(AccuracyKind::Structure),
         declare("nodes_visible", "nodes", Higher, "Leaf nodes found visible."),
+        declare("boxes_visible", "boxes", Lower, "Boxes not found to be outside."),
+        declare("time_per_box", "ns", Lower, "The median frame's time over the boxes there are."),
+        declare("bytes_per_second", "B/s", Higher, "Bytes of all boxes over the median frame's time."),
+        declare("stream_time", "ns", Lower, "Median time to read the boxes' memory, shared out alike."),
+        declare(
+            "stream_ratio",
+            "x",
+            Lower,
+            "The median frame's time over that of reading the boxes' memory.",
+        ),
         declare(
             "lost_time",
             "%",

@@ -1,10 +1,14 @@
 //! What is built over a scene: trees of boxes, and what is to be said of their shape.
 
 mod aabb_tree;
+mod box_tree;
+mod boxes;
 mod skip_tree;
 mod statistics;
 
 pub use aabb_tree::{AabbTree, AabbTreeNode};
+pub use box_tree::{BoxTree, BoxTreeView, Looked};
+pub use boxes::{BitMask, Boxes, cull, cull_blocks, cull_into};
 pub use skip_tree::{SkipNode, SkipTree};
 pub use statistics::TreeStatistics;
 

@@ -6,8 +6,10 @@ use apportion::machine::{Machine, Threads};
 use apportion::scheme::tiles::Scheme;
 use apportion::structure::{BitMask, BoxTree, Boxes, cull_blocks, cull_into};
 use bevy_camera::primitives as bevy;
-use bevy_math::{Mat4, Vec3};
 use bevy_shape::ViewFrustum;
+use glam::camera::rh::proj::{directx, opengl};
+use glam::camera::rh::view::look_to_mat4;
+use glam::{Mat4, Vec3};
 use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -33,7 +35,12 @@ pub(crate) struct Contender<'a> {
 }
 
 /// A contender that fills a mask in the order of the boxes.
-fn masked<'a>(name: &str, cull: impl FnMut(usize, &mut BitMask) + 'a, order: Option<&'a [u32]>, len: usize) -> Contender<'a> {
+fn masked<'a>(
+    name: &str,
+    cull: impl FnMut(usize, &mut BitMask) + 'a,
+    order: Option<&'a [u32]>,
+    len: usize,
+) -> Contender<'a> {
     let state = Rc::new(RefCell::new((cull, BitMask::new(len))));
     let other = state.clone();
     let run = move |frame| {
@@ -87,9 +94,10 @@ pub(crate) fn all<'a>(setting: &'a Setting<'a>) -> Vec<Contender<'a>> {
     contenders.push(masked("geometry::culling::basic, box by box", plain, None, len));
     contenders.push(bevy(setting));
     contenders.push(treeculler(setting));
-    contenders.extend([("binned", BvhBuildStrategy::Binned), ("ploc", BvhBuildStrategy::Ploc)].map(
-        |(name, strategy)| parry(setting, name, strategy),
-    ));
+    contenders.extend(
+        [("binned", BvhBuildStrategy::Binned), ("ploc", BvhBuildStrategy::Ploc)]
+            .map(|(name, strategy)| parry(setting, name, strategy)),
+    );
     contenders
 }
 
@@ -124,7 +132,7 @@ fn two_threads<'a>(setting: &Setting<'a>, way: Way) -> Contender<'a> {
 
 fn clip_from_world(camera: &Camera, projection: Mat4) -> Mat4 {
     let [eye, forward, up] = [camera.eye, camera.forward, camera.up].map(|v| Vec3::from_array(v.to_array()));
-    projection * Mat4::look_to_rh(eye, forward, up)
+    projection * look_to_mat4(eye, forward, up)
 }
 
 /// Opening angle and width over height.
@@ -139,7 +147,7 @@ fn bevy_frusta(cameras: &[Camera]) -> Vec<bevy::Frustum> {
     let one = |camera: &Camera| {
         let (fov_y, aspect) = lens(camera);
         // Near and far the other way round: bevy's depth goes from 1 to 0.
-        let projection = Mat4::perspective_rh(fov_y, aspect, camera.far, camera.near);
+        let projection = directx::perspective(fov_y, aspect, camera.far, camera.near);
         bevy::Frustum(ViewFrustum::from_clip_from_world(&clip_from_world(camera, projection)))
     };
     cameras.iter().map(one).collect()
@@ -165,8 +173,10 @@ fn treeculler<'a>(setting: &Setting<'a>) -> Contender<'a> {
         .iter()
         .map(|camera| {
             let (fov_y, aspect) = lens(camera);
-            let projection = Mat4::perspective_rh_gl(fov_y, aspect, camera.near, camera.far);
-            treeculler::Frustum::from_modelview_projection(clip_from_world(camera, projection).to_cols_array_2d())
+            let projection = opengl::perspective(fov_y, aspect, camera.near, camera.far);
+            treeculler::Frustum::from_modelview_projection(
+                clip_from_world(camera, projection).to_cols_array_2d(),
+            )
         })
         .collect();
     let cull = move |frame: usize, mask: &mut BitMask| {

@@ -13,7 +13,7 @@ fn tree(count: usize) -> BoxTree {
 /// Runs every scheme the machine takes, in every way, and compares the masks.
 fn hold<M: Machine>(machine: &M, processors: usize, tree: &BoxTree) {
     let mut field = BoxField::<M>::new(machine, tree, true);
-    assert!(field.bytes() >= 24 * field.len() && field.is_empty() == (tree.boxes().len() == 0));
+    assert!(field.bytes() >= 24 * field.len() && field.is_empty() == tree.boxes().is_empty());
     for (number, share) in [20.0, 55.0].into_iter().enumerate() {
         let camera = camera(tree.boxes(), number, share);
         let frustum = Frustum::new(&camera);

@@ -22,6 +22,8 @@ pub(super) trait Lanes: Copy {
     /// The greater of each pair; `other`'s if one is NaN.
     unsafe fn max(self, other: Self) -> Self;
     unsafe fn abs(self) -> Self;
+    /// Asks for a block that will be read soon, where the processor can be asked.
+    fn prefetch(_block: &BoxBlock) {}
     /// Bit `i` is set when lane `i` is greater than `other`'s.
     unsafe fn greater(self, other: Self) -> u64;
 }
@@ -66,6 +68,9 @@ unsafe fn worst<L: Lanes, const FARTHEST: bool>(view: &View, relative: &[[L; 2];
     }
 }
 
+/// How many blocks ahead memory is asked for: 3 KB, some hundred nanoseconds.
+const AHEAD: usize = 2;
+
 /// Tests every block.
 ///
 /// # Safety
@@ -73,7 +78,11 @@ unsafe fn worst<L: Lanes, const FARTHEST: bool>(view: &View, relative: &[[L; 2];
 #[inline(always)]
 pub(super) unsafe fn visible<L: Lanes>(view: &View, blocks: &[BoxBlock], words: &mut [u64]) {
     const { assert!(BoxBlock::LEN.is_multiple_of(L::LEN) && PLANE_COUNT > 0) };
-    for (block, word) in blocks.iter().zip(words) {
+    for (i, (block, word)) in blocks.iter().zip(words).enumerate() {
+        // Six columns at a time are too many short streams for the processor to foresee.
+        if let Some(soon) = blocks.get(i + AHEAD) {
+            L::prefetch(soon);
+        }
         let mut hidden = 0;
         for from in (0..BoxBlock::LEN).step_by(L::LEN) {
             // SAFETY: `from` steps by the lanes' number below 64; the processor is the caller's.

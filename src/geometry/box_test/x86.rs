@@ -52,6 +52,10 @@ macro_rules! lanes {
                 Self(unsafe { $abs(self.0) })
             }
             #[inline(always)]
+            fn prefetch(block: &BoxBlock) {
+                prefetch(block);
+            }
+            #[inline(always)]
             unsafe fn greater(self, other: Self) -> u64 {
                 // SAFETY: as said above.
                 unsafe { $greater(self.0, other.0) }
@@ -63,6 +67,15 @@ macro_rules! lanes {
 lanes!(Lanes4(__m128) of 4: _mm_set1_ps _mm_load_ps _mm_add_ps _mm_sub_ps _mm_mul_ps _mm_max_ps abs4 greater4);
 lanes!(Lanes8(__m256) of 8: _mm256_set1_ps _mm256_load_ps _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_max_ps abs8 greater8);
 lanes!(Lanes16(__m512) of 16: _mm512_set1_ps _mm512_load_ps _mm512_add_ps _mm512_sub_ps _mm512_mul_ps _mm512_max_ps _mm512_abs_ps greater16);
+
+/// Asks for each line of a block.
+#[inline(always)]
+fn prefetch(block: &BoxBlock) {
+    for line in block.columns().flat_map(|column| column.as_chunks::<16>().0) {
+        // SAFETY: every x86-64 processor has the instruction, which reads nothing.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(line.as_ptr().cast()) };
+    }
+}
 
 #[inline]
 #[target_feature(enable = "sse2")]

@@ -15,7 +15,9 @@ pub(crate) fn stress(what: &str, processors: u32, seconds: u64) -> Result<()> {
     })?;
     if report.violations.is_empty() {
         let (runs, nodes) = (report.runs, report.nodes);
-        return print::line(&format!("{what}: {runs} runs, {nodes} nodes or turns, every invariant held"));
+        return print::line(&format!(
+            "{what}: {runs} runs, {nodes} nodes, turns or boxes, every invariant held"
+        ));
     }
     let mut text = format!("an invariant broke after {} runs", report.runs);
     for violation in &report.violations {

@@ -3,6 +3,8 @@
 //! Lengths are in metres, angles in radians, unless a line says otherwise. Nothing here allocates.
 
 mod aabb;
+mod box_block;
+pub mod box_test;
 mod camera;
 pub mod culling;
 mod frustum;
@@ -12,6 +14,9 @@ pub mod raster;
 pub mod volume;
 
 pub use aabb::Aabb;
+pub use box_block::BoxBlock;
+pub(crate) use box_block::around;
+pub use box_test::{BoxTest, Kernel};
 pub use camera::{Camera, CameraError, Lens};
 pub use frustum::Frustum;
 pub use plane::{PLANE_COUNT, Plane};

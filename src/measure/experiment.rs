@@ -74,8 +74,8 @@ enum Scenes {
     Many(Vec<String>),
 }
 
-/// The structure jobs go through: there is one as yet.
-const STRUCTURE: &str = "skip_tree";
+/// The structures jobs go through, the one of an experiment that names none first.
+const STRUCTURES: &[&str] = &["skip_tree", "boxes"];
 
 impl Experiment {
     /// Reads and checks an experiment; `file` is what errors call it.
@@ -103,7 +103,7 @@ impl Experiment {
                 Some(Scenes::One(scene)) => vec![scene],
                 Some(Scenes::Many(scenes)) => scenes,
             },
-            structure: STRUCTURE.to_owned(),
+            structure: parsed.structure.map_or_else(|| STRUCTURES[0].to_owned(), Spanned::into_inner),
             frames: parsed.frames.into_inner(),
             quick_frames: parsed.quick_frames.into_inner(),
             repeats: parsed.repeats.into_inner(),
@@ -121,13 +121,21 @@ fn inner<T>(map: BTreeMap<String, Spanned<T>>) -> BTreeMap<String, T> {
     map.into_iter().map(|(key, value)| (key, value.into_inner())).collect()
 }
 
+/// What to say of a scheme for work of another shape than a job has.
+pub(super) fn does_not_suit(job: &str, scheme: &str, known: &Known) -> String {
+    format!(
+        "scheme `{scheme}` is for work of another shape than job `{job}` has; expected one of: {}",
+        known.schemes_of(job)
+    )
+}
+
 /// What is wrong, and at which byte of the file.
 type Wrong = (usize, String);
 
 fn check(file: &File, known: &Known) -> Result<(), Wrong> {
     one_of("job", &file.job, &known.jobs)?;
     if let Some(structure) = &file.structure {
-        one_of("structure", structure, &[STRUCTURE.to_owned()])?;
+        one_of("structure", structure, &STRUCTURES.iter().map(|&name| name.to_owned()).collect::<Vec<_>>())?;
     }
     for machine in &file.machines {
         one_of("machine", machine, &known.machines)?;
@@ -139,6 +147,9 @@ fn check(file: &File, known: &Known) -> Result<(), Wrong> {
     }
     for scheme in &file.schemes {
         one_of("scheme", scheme, &known.schemes)?;
+        if !(known.suits)(file.job.get_ref(), scheme.get_ref()) {
+            return Err((scheme.span().start, does_not_suit(file.job.get_ref(), scheme.get_ref(), known)));
+        }
     }
     for (machine, list) in &file.processors {
         // `1-cores` must be a list on every computer, so it is checked as if there were the most cores threads can use.

@@ -1,6 +1,6 @@
 //! From an experiment and the words of the command line to the list of cells.
 
-use super::experiment::SHARED;
+use super::experiment::{SHARED, does_not_suit};
 use super::until::FEWEST;
 use super::{Experiment, Known, MeasureError, Until, Value, near, processor_list};
 use crate::machine::simulated::Model;
@@ -282,6 +282,10 @@ fn schemes(
     let mut schemes = experiment.schemes.clone();
     if !selection.schemes.is_empty() {
         all_known("scheme", &selection.schemes, &known.schemes)?;
+        let job = &experiment.job;
+        if let Some(scheme) = selection.schemes.iter().find(|scheme| !(known.suits)(job, scheme)) {
+            return Err(MeasureError::Words(does_not_suit(job, scheme, known)));
+        }
         schemes.retain(|scheme| is_serial(scheme));
         schemes.extend(selection.schemes.iter().filter(|scheme| !is_serial(scheme)).cloned());
     }

@@ -5,13 +5,15 @@
 //! runs seldom see. A schedule of real threads cannot be repeated, but what was asked of it can: each
 //! run has a seed. A run that never ends shows in a progress that stops.
 
-mod culling;
+mod cull_kernels;
+mod cull_tests;
 mod primitives;
+mod tiles;
 mod trees;
 
 use crate::machine::{RunError, Threads};
 use crate::scene::SplitMix64;
-use crate::scheme::tree::SCHEMES;
+use crate::scheme::{About, tiles as tile_schemes, tree as tree_schemes};
 use std::time::{Duration, Instant};
 
 /// The primitives that can be stressed by themselves.
@@ -19,7 +21,8 @@ const PRIMITIVES: &[(&str, primitives::Check)] = &[
     ("in_queue", primitives::in_queue),
     ("lock", primitives::lock),
     ("quiescence", primitives::quiescence),
-    ("cull_tests", culling::tests),
+    ("cull_tests", cull_tests::check),
+    ("cull_kernels", cull_kernels::check),
 ];
 
 /// What was run, and what went wrong.
@@ -27,7 +30,7 @@ const PRIMITIVES: &[(&str, primitives::Check)] = &[
 pub struct StressReport {
     /// Runs made.
     pub runs: u64,
-    /// Nodes visited, tasks passed on, turns taken, or verdicts given in these runs.
+    /// Nodes visited, tasks passed on, turns taken, boxes tested, or verdicts given in these runs.
     pub nodes: u64,
     /// Invariants found broken. Stressing ends at the first of them.
     pub violations: Vec<Violation>,
@@ -62,7 +65,16 @@ pub enum StressError {
 
 /// Everything that can be stressed, besides `all`.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    PRIMITIVES.iter().map(|(name, _)| *name).chain(SCHEMES.iter().map(|scheme| scheme.name))
+    let schemes = tree_schemes::SCHEMES
+        .iter()
+        .chain(tile_schemes::SCHEMES.iter().filter(|scheme| is_tiles(scheme.name)));
+    PRIMITIVES.iter().map(|(name, _)| *name).chain(schemes.map(|scheme| scheme.name))
+}
+
+/// Whether a name is that of a tile scheme; one that exists for trees too (`serial`) is taken for a tree's.
+fn is_tiles(name: &str) -> bool {
+    let is_in = |schemes: &[About]| schemes.iter().any(|scheme| scheme.name == name);
+    is_in(tile_schemes::SCHEMES) && !is_in(tree_schemes::SCHEMES)
 }
 
 /// Stresses the scheme or primitive called `what`, or `all` in turn, on up to `processors` threads until
@@ -113,6 +125,7 @@ pub fn stress_from(
             let primitive = PRIMITIVES.iter().find(|(primitive, _)| *primitive == name);
             let outcome = match primitive {
                 Some((_, check)) => check(&team, processors, &mut random),
+                None if is_tiles(name) => tiles::check(name, &team, processors, &mut random),
                 None => trees::check(name, &team, processors, &mut random),
             };
             report.runs += 1;

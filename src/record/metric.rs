@@ -114,7 +114,7 @@ pub const METRICS: &[Metric] = {
         ),
         declare("nodes_visited", "nodes", Lower, "Nodes of the structure the job looked at.")
             .gives_up(AccuracyKind::Structure),
-        declare("time_per_box", "ns", Lower, "Total time over all volumes looked at."),
+        declare("time_per_visit", "ns", Lower, "Total time over all nodes looked at."),
         declare(
             "speedup_over_baseline",
             "x",
@@ -179,6 +179,16 @@ pub const METRICS: &[Metric] = {
         declare("split_depth", "parts", Lower, "Parts on the longest way from a whole mesh to a leaf."),
         declare("build_time", "ns", Lower, "Time of building the tree over the leaves."),
         declare("build_rate", "Mleaves/s", Higher, "Millions of leaves built into the tree a second."),
+        declare("boxes_visible", "boxes", Lower, "Boxes not found to be outside."),
+        declare("time_per_box", "ns", Lower, "The median frame's time over the boxes there are."),
+        declare("bytes_per_second", "B/s", Higher, "Bytes of all boxes over the median frame's time."),
+        declare("stream_time", "ns", Lower, "Median time to read the boxes' memory, shared out alike."),
+        declare(
+            "stream_ratio",
+            "x",
+            Lower,
+            "The median frame's time over that of reading the boxes' memory.",
+        ),
         declare(
             "lost_time",
             "%",

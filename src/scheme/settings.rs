@@ -31,8 +31,10 @@ pub enum SettingError {
         known: String,
     },
     /// There is no such scheme.
-    #[error("no scheme `{name}` for trees; there are: {known}")]
+    #[error("no scheme `{name}` for {shape}; there are: {known}")]
     NoScheme {
+        /// What it should share out: "trees", "tiles".
+        shape: &'static str,
         /// What was asked for.
         name: String,
         /// The schemes there are.

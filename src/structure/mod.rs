@@ -1,6 +1,8 @@
 //! What is built over a scene: trees of boxes, and what is to be said of their shape.
 
 mod aabb_tree;
+mod box_tree;
+mod boxes;
 mod midpoint;
 mod midpoint_tree;
 mod placed_leaves;
@@ -10,6 +12,8 @@ mod statistics;
 mod volumes;
 
 pub use aabb_tree::{AabbTree, AabbTreeNode};
+pub use box_tree::{BoxTree, BoxTreeView, Looked};
+pub use boxes::{BitMask, Boxes, cull, cull_blocks, cull_into};
 pub use midpoint_tree::{MidpointStatistics, Object, midpoint_tree};
 pub use placed_leaves::{PlacedLeaf, PlacedLeaves};
 pub use skip_tree::{SkipNode, SkipTree};

@@ -29,6 +29,11 @@ fn errors_name_file_line_and_what_was_expected() {
             "\"steling\"]",
             "mock.toml, line 11: there is no scheme `steling`; near ones: stealing",
         ),
+        (
+            "\"stealing\"]",
+            "\"rectangles\"]",
+            "mock.toml, line 11: scheme `rectangles` is for work of another shape than job `mock` has; expected one of: serial, queue, ring, stealing",
+        ),
         ("machines = [\"e4000\"", "machines = [\"e400\"", "mock.toml, line 9: there is no machine `e400`"),
         ("\"1-13\"", "\"1-13-4\"", "mock.toml, line 10: `1-13-4` is no list of processor counts"),
         ("\"*\" =", "\"x\" =", "mock.toml, line 9: `processors` says nothing of `threads`"),

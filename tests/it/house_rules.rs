@@ -30,6 +30,10 @@ fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
         if path.is_dir() {
+            // What cargo builds below a package of its own is nobody's source.
+            if path.file_name().is_some_and(|name| name == "target") {
+                continue;
+            }
             found.extend(files(&path, endings));
         } else if endings.iter().any(|ending| path.extension().is_some_and(|extension| extension == *ending))
         {

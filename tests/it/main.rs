@@ -16,5 +16,6 @@ mod run;
 mod scene;
 mod schemes;
 mod structure;
+mod tiles;
 mod trace;
 mod trace_file;

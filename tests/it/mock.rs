@@ -9,7 +9,8 @@ pub(crate) fn known() -> Known {
     let words = |list: &[&str]| list.iter().map(|word| (*word).to_owned()).collect();
     Known {
         jobs: words(&["mock"]),
-        schemes: words(&["serial", "queue", "ring", "stealing"]),
+        schemes: words(&["serial", "queue", "ring", "stealing", "rectangles"]),
+        suits: |_, scheme| scheme != "rectangles",
         machines: words(&["threads", "e4000"]),
         fits: |scheme, machine, _| !(scheme == "stealing" && machine == "e4000"),
         learns: |_| false,

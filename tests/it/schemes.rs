@@ -329,7 +329,7 @@ fn wrong_settings_are_told_apart() {
     let machine = e4000();
     let new = |name: &str, pairs: &[(&str, String)]| Scheme::new(name, &machine, 2, settings(pairs)).err();
     match new("lockfree", &[]) {
-        Some(SettingError::NoScheme { name, known }) => {
+        Some(SettingError::NoScheme { name, known, .. }) => {
             assert_eq!(name, "lockfree");
             assert!(names().all(|name| known.contains(name)), "{known}");
         }

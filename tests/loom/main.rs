@@ -13,6 +13,7 @@ mod mutant;
 mod quiescence;
 mod rings;
 mod schemes;
+mod tiles;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};

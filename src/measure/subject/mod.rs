@@ -1,6 +1,7 @@
 //! What is measured: the way from a cell to the job, scheme and machine it names.
 
 mod cull;
+mod cull_boxes;
 mod draw;
 mod settings;
 mod staging;
@@ -14,7 +15,7 @@ use crate::machine::threads::TeamSettings;
 use crate::machine::{Machine, Simulated, Threads};
 use crate::record::THREADS;
 use crate::scene::{self, Cache, CameraPath, Origin, Scene};
-use crate::scheme::tree::SCHEMES;
+use crate::scheme::{About, Shape};
 use crate::structure::{AabbTree, SkipTree};
 use std::collections::HashMap;
 use std::fmt::Display;
@@ -69,8 +70,10 @@ pub trait Subject {
 pub struct Known {
     /// Words of the jobs.
     pub jobs: Vec<String>,
-    /// Words of the schemes.
+    /// Words of the schemes, of every shape.
     pub schemes: Vec<String>,
+    /// Whether a scheme shares out work of the shape that a job has.
+    pub suits: fn(job: &str, scheme: &str) -> bool,
     /// Words of the machines, real and simulated.
     pub machines: Vec<String>,
     /// Whether a scheme can run on a machine with so many processors; a plan leaves out what cannot.
@@ -81,20 +84,38 @@ pub struct Known {
 
 /// The jobs, by word: how each is made ready. The list is the table of contents.
 type OpenJob = fn(&Cell, &Options, &mut SubjectCache) -> Result<Box<dyn Subject>, MeasureError>;
-const JOBS: &[(&str, OpenJob)] = &[("cull", cull::open), ("draw", draw::open), ("tree", tree::open)];
+const JOBS: &[(&str, OpenJob)] =
+    &[("cull", cull::open), ("cull_boxes", cull_boxes::open), ("draw", draw::open), ("tree", tree::open)];
+/// The jobs made of independent pieces; the others descend a hierarchy.
+const IN_PIECES: &[&str] = &["cull_boxes"];
+
+/// All schemes, whatever their shape.
+fn schemes() -> impl Iterator<Item = &'static About> {
+    Shape::ALL.into_iter().flat_map(Shape::schemes)
+}
 
 impl Known {
     /// All that this version knows.
     pub fn here() -> Self {
         Self {
             jobs: JOBS.iter().map(|(word, _)| (*word).to_owned()).collect(),
-            schemes: SCHEMES.iter().map(|scheme| scheme.name.to_owned()).collect(),
+            schemes: schemes().fold(Vec::new(), |mut names, scheme| {
+                // `serial` exists in every shape.
+                if !names.iter().any(|name| name == scheme.name) {
+                    names.push(scheme.name.to_owned());
+                }
+                names
+            }),
+            suits: |job, scheme| {
+                let shape = if IN_PIECES.contains(&job) { Shape::Tiles } else { Shape::Tree };
+                shape.schemes().iter().any(|known| known.name == scheme)
+            },
             machines: std::iter::once(THREADS).chain(Model::names()).map(str::to_owned).collect(),
             fits: |scheme, machine, _| {
-                let native_only = SCHEMES.iter().any(|known| known.name == scheme && known.native_only);
+                let native_only = schemes().any(|known| known.name == scheme && known.native_only);
                 machine == THREADS || !native_only
             },
-            learns: |scheme| SCHEMES.iter().any(|known| known.name == scheme && known.learns),
+            learns: |scheme| schemes().any(|known| known.name == scheme && known.learns),
         }
     }
 }
@@ -103,9 +124,18 @@ impl Known {
 #[derive(Default)]
 pub struct SubjectCache {
     scenes: HashMap<String, Rc<Stage>>,
+    boxes: HashMap<String, Rc<cull_boxes::BoxStage>>,
     teams: HashMap<u32, Rc<Threads>>,
     models: HashMap<String, Model>,
     drawings: draw::Drawings,
+}
+
+impl Known {
+    /// The schemes a job can have, for a message.
+    pub(super) fn schemes_of(&self, job: &str) -> String {
+        let suits = self.schemes.iter().filter(|scheme| (self.suits)(job, scheme));
+        suits.map(String::as_str).collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// A scene ready to be gone through: it, its tree and a camera for each frame.

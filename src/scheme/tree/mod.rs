@@ -41,25 +41,13 @@ mod serial;
 mod work;
 mod work_stealing;
 
+pub use super::{About, Share, ShareError};
 use super::{SettingError, Settings};
 use crate::machine::{Machine, RunError};
 pub use choice::levels as processor_levels;
 use std::collections::BTreeMap;
 use work::Billed;
-pub use work::{Share, Task, TreeWork, work};
-
-/// A scheme in the list of schemes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct About {
-    /// Its name: word of the command line, value in rows, legend.
-    pub name: &'static str,
-    /// What it is, in a line.
-    pub summary: &'static str,
-    /// Whether it is another library's, which runs on real threads only.
-    pub native_only: bool,
-    /// Whether it learns from run to run, so that its first runs do not tell how fast it is.
-    pub learns: bool,
-}
+pub use work::{Task, TreeWork, work};
 
 /// Declares the schemes: the list is the table of contents. Each file holds a type of one name, with
 /// `SUMMARY`, `NATIVE_ONLY`, `LEARNS`, `new` and `run`; the file's name is the scheme's word everywhere.
@@ -84,7 +72,7 @@ macro_rules! tree_schemes {
                     })*
                     _ => {
                         let known = SCHEMES.iter().map(|scheme| scheme.name).collect::<Vec<_>>().join(", ");
-                        Err(SettingError::NoScheme { name: name.to_owned(), known })
+                        Err(SettingError::NoScheme { shape: "trees", name: name.to_owned(), known })
                     }
                 }
             }
@@ -158,17 +146,6 @@ impl<M: Machine> Scheme<M> {
     pub fn about(&self) -> &'static About {
         self.about
     }
-}
-
-/// Why [`share`] failed.
-#[derive(Debug, thiserror::Error)]
-pub enum ShareError {
-    /// The scheme cannot be set up so.
-    #[error(transparent)]
-    Setting(#[from] SettingError),
-    /// The run failed.
-    #[error(transparent)]
-    Run(#[from] RunError),
 }
 
 /// Shares out `work` once, under the scheme called `name` with its default settings. To do it every

@@ -161,15 +161,6 @@ impl<W: TreeWork> TreeWork for Billed<'_, W> {
     }
 }
 
-/// What one processor did in a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Share<F> {
-    /// What it found.
-    pub found: F,
-    /// Tasks it visited.
-    pub visited: u64,
-}
-
 /// Work made of closures: a root, an empty gathering, and a visit that gets the task, the gathering
 /// and a function to emit tasks with.
 pub fn work<T: Task, F: Send>(

@@ -210,7 +210,7 @@ impl<H: Borrow<M>, M: Machine> CullSubject<H, M> {
         samples.push(Sample::of_path("nodes_visited", visited as f64 / frames));
         samples.push(Sample::of_path("nodes_visible", visible as f64 / frames));
         let ns = own as f64 / machine.ticks_per_nanosecond();
-        samples.push(Sample::of_path("time_per_box", ns / visited.max(1) as f64));
+        samples.push(Sample::of_path("time_per_visit", ns / visited.max(1) as f64));
         if self.baseline.is_some() {
             samples.push(Sample::of_path("speedup_over_baseline", others as f64 / own.max(1) as f64));
         }

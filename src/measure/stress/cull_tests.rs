@@ -93,7 +93,7 @@ fn bounds(camera: &Camera, frustum: &Frustum, random: &mut SplitMix64) -> Aabb {
 }
 
 /// Holds every combination of steps against the exact test, over a path; how many verdicts that were.
-pub(super) fn tests(_: &Threads, _: usize, random: &mut SplitMix64) -> Result<u64, String> {
+pub(super) fn check(_: &Threads, _: usize, random: &mut SplitMix64) -> Result<u64, String> {
     let Some(first) = camera(random) else { return Ok(0) };
     let mut path = vec![first];
     while path.len() < FRAMES {

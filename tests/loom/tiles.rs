@@ -1,0 +1,72 @@
+//! Every tile scheme of the list, whole: each piece is worked on exactly once, by one processor alone.
+
+use crate::machine::{Loom, LoomSlot};
+use crate::mutant::Mutant::Torn;
+use crate::mutant::is_caught;
+use crate::{Bounds, check};
+use apportion::machine::{Processor, Slot};
+use apportion::scheme::tiles::{SCHEMES, Scheme, TileWork};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Pieces that count how often they were worked on: two processors on one piece are a race.
+struct Pieces(Vec<LoomSlot<u32>>);
+
+impl TileWork for Pieces {
+    type Found = ();
+
+    fn pieces(&self) -> usize {
+        self.0.len()
+    }
+
+    fn found(&self) {}
+
+    fn work_on<P: Processor>(&self, pieces: Range<usize>, _found: &mut (), _cpu: &P) {
+        for slot in &self.0[pieces] {
+            // SAFETY: nobody else has the piece, if the scheme is right; loom reports races.
+            unsafe { slot.write(slot.read() + 1) };
+        }
+    }
+}
+
+/// Runs a scheme twice on so many pieces.
+fn works(name: &str, processors: usize, count: usize) {
+    let machine = Loom::new();
+    let mut scheme = Scheme::new(name, &machine, processors, BTreeMap::new()).expect("defaults");
+    for _ in 0..2 {
+        let pieces = Pieces((0..count).map(|_| LoomSlot::new(0)).collect());
+        let shares = scheme.run(&machine, &pieces).expect("no panic");
+        assert_eq!(shares.iter().map(|share| share.visited).sum::<u64>(), count as u64, "{name}");
+        for (piece, slot) in pieces.0.iter().enumerate() {
+            // SAFETY: the run is over.
+            assert_eq!(unsafe { slot.read() }, 1, "{name}: times piece {piece} was worked on");
+        }
+    }
+}
+
+fn names() -> impl Iterator<Item = &'static str> {
+    SCHEMES.iter().filter(|scheme| !scheme.native_only).map(|scheme| scheme.name)
+}
+
+/// Schemes in which the processors share nothing, so that nothing can go wrong between two.
+const SHARE_NOTHING: &[&str] = &["serial", "static_blocks", "interleaved"];
+
+fn bounds() -> Bounds {
+    Bounds { preemptions: 3, steps: 5_000 }
+}
+
+#[test]
+fn every_scheme_works_on_each_piece_once() {
+    for name in names() {
+        for (processors, count) in [(2, 0), (2, 1), (2, 4), (2, 5), (3, 3)] {
+            check(bounds(), move || works(name, processors, count));
+        }
+    }
+}
+
+#[test]
+fn a_counter_that_is_loaded_and_stored_is_caught() {
+    for name in names().filter(|name| !SHARE_NOTHING.contains(name)) {
+        assert!(is_caught(Torn, bounds(), move || works(name, 2, 4)), "{name}");
+    }
+}

@@ -30,6 +30,9 @@ pub struct Culler<'a, V: Volume> {
     plain: bool,
     projection: Option<Projection>,
     motion: Option<Motion>,
+    /// Distances are kept: there is an epoch to keep them for. One that began with this very frame may end with
+    /// it, as each does while the camera turns, and keeping costs more than a test (P1-F05).
+    keeps: bool,
 }
 
 impl<'a, V: Volume> Culler<'a, V> {
@@ -44,8 +47,9 @@ impl<'a, V: Volume> Culler<'a, V> {
         }
         let motion = motion.filter(|motion| !motion.is_spent());
         let projection = (steps.space != Space::World).then(|| Projection::new(frustum));
+        let keeps = steps.translation && motion.is_some_and(|motion| motion.epoch < motion.frame);
         let common = Steps { cached: steps.cached, octant: steps.octant, ..Steps::BASIC };
-        Ok(Self { steps, plain: steps == common, motion, projection, ..Self::basic(frustum) })
+        Ok(Self { steps, plain: steps == common, motion, keeps, projection, ..Self::basic(frustum) })
     }
 
     /// The test by all six planes and nothing else.
@@ -59,6 +63,7 @@ impl<'a, V: Volume> Culler<'a, V> {
             plain: true,
             projection: None,
             motion: None,
+            keeps: false,
         }
     }
 
@@ -178,7 +183,7 @@ impl<'c, V: Volume, M: Memory, const PLAIN: bool> Walk<'c, '_, V, M, PLAIN> {
     #[inline]
     fn carry_over(&mut self, head: Head) -> Option<u8> {
         let motion = self.culler.motion.as_ref().filter(|motion| motion.epoch == head.epoch)?;
-        if !self.culler.steps.translation {
+        if !self.culler.keeps {
             return None;
         }
         self.valid = head.valid;
@@ -217,7 +222,7 @@ impl<'c, V: Volume, M: Memory, const PLAIN: bool> Walk<'c, '_, V, M, PLAIN> {
         let slack = self.placed.slack();
         // The p-vertex of a volume that is outside is never looked at, unless its distance is to be kept.
         let far = |walk: &Self| at.farthest(&walk.placed, &field);
-        if !PLAIN && self.culler.steps.translation {
+        if !PLAIN && self.culler.keeps {
             self.keep(plane, near - slack, far(self) + slack);
         }
         let outside = near > slack;
@@ -236,7 +241,7 @@ impl<'c, V: Volume, M: Memory, const PLAIN: bool> Walk<'c, '_, V, M, PLAIN> {
         let greatest = self.placed.farthest(at.normal, &field);
         let slack = self.placed.slack();
         let ends = [(least + at.low, greatest + at.high), (opposite.low - greatest, opposite.high - least)];
-        if self.culler.steps.translation {
+        if self.culler.keeps {
             for (plane, (near, far)) in [plane, plane ^ 1].into_iter().zip(ends) {
                 self.keep(plane, near - slack, far + slack);
             }

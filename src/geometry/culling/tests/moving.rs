@@ -182,8 +182,9 @@ fn a_shift_carries_all_distances_over() {
     let camera = ahead();
     let bounds = cube(camera.eye + camera.forward * 10.0, 1.0);
     let verdicts = along("translation", &camera, &[Move::Shift(Vec3::new(0.01, 0.0, 0.002)); 60], &bounds);
-    assert_eq!((verdicts[0].side, verdicts[0].tests), (Side::Inside, 6));
-    assert!(verdicts[1..].iter().all(|verdict| verdict.tests == 0), "{verdicts:?}");
+    // The first frame cannot know that there will be an epoch.
+    assert!(verdicts[..2].iter().all(|verdict| (verdict.side, verdict.tests) == (Side::Inside, 6)));
+    assert!(verdicts[2..].iter().all(|verdict| verdict.tests == 0), "{verdicts:?}");
     assert_eq!(verdicts[60].side, Side::Outside(0), "it went out on the left");
 }
 
@@ -192,11 +193,11 @@ fn a_shift_carries_all_distances_over() {
 fn planes_that_were_left_out_are_tested_when_needed() {
     let camera = ahead();
     let bounds = cube(camera.eye + Vec3::new(-9.0, 0.0, -10.0), 1.0);
-    let verdicts = along("translation", &camera, &[Move::Shift(Vec3::new(-0.03, 0.0, 0.0)); 8], &bounds);
-    assert_eq!((verdicts[0].side, verdicts[0].tests), (Side::Outside(0), 1));
+    let verdicts = along("translation", &camera, &[Move::Shift(Vec3::new(-0.01, 0.0, 0.0)); 16], &bounds);
+    assert_eq!((verdicts[1].side, verdicts[1].tests), (Side::Outside(0), 1));
     let came_in = verdicts.iter().position(|verdict| verdict.side != Side::Outside(0)).unwrap();
     assert_eq!(verdicts[came_in].tests, 5, "the other five");
-    assert!(verdicts[1..came_in].iter().all(|verdict| verdict.tests == 0));
+    assert!(verdicts[2..came_in].iter().all(|verdict| verdict.tests == 0));
 }
 
 /// P1-F07: added up frame by frame, distances drift; here they do not, however long the way.
@@ -207,7 +208,7 @@ fn a_long_way_there_and_back_ends_in_no_doubt() {
     let to_and_fro = [Move::Shift(Vec3::new(0.003, 0.001, 0.0)), Move::Shift(Vec3::new(-0.003, -0.001, 0.0))];
     let verdicts = along("translation", &camera, &to_and_fro.repeat(20_000), &bounds);
     assert!(verdicts.iter().all(|verdict| verdict.side == Side::Inside));
-    assert!(verdicts.iter().filter(|verdict| verdict.tests > 0).count() < 10);
+    assert!(verdicts.iter().filter(|verdict| verdict.tests > 0).count() < 10, "epochs are few");
 }
 
 /// P1-F05: with a turn and a shift in each frame nothing is carried over, and P1-F06: nor after a zoom.

@@ -141,10 +141,10 @@ impl<'c, V: Volume, M: Memory, const PLAIN: bool> Walk<'c, '_, V, M, PLAIN> {
             if now != head {
                 self.memory.keep(now);
             }
-        } else if steps.cached != Cached::Nothing {
-            if let Some(plane) = kept.filter(|plane| *plane != head.plane) {
-                self.memory.keep(Head { plane, ..Head::default() });
-            }
+        } else if let Some(plane) =
+            kept.filter(|plane| steps.cached != Cached::Nothing && *plane != head.plane)
+        {
+            self.memory.keep(Head { plane, ..Head::default() });
         }
         let side = match (rejected, crossed) {
             (Some(plane), _) => Side::Outside(plane),

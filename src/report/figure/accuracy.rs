@@ -52,6 +52,7 @@ fn figure(material: &Material<'_>, kind: AccuracyKind) -> Option<Figure> {
     let mut panels = Vec::new();
     // Where nothing is shared out, settings have looks of their own instead of the one scheme.
     let (label, view) = (labels(rows), views(rows));
+    let alone = rows.iter().all(|row| row.machine == rows[0].machine);
     let name: Option<&dyn Fn(&str) -> String> = if material.choices.is_empty() { None } else { Some(&label) };
     for metric in METRICS.iter().filter(|metric| metric.accuracy == Some(kind)) {
         let mut places: BTreeMap<(&str, &str, &str, String), Vec<Choice<'_>>> = BTreeMap::new();
@@ -70,7 +71,7 @@ fn figure(material: &Material<'_>, kind: AccuracyKind) -> Option<Figure> {
         for ((machine, _, scene, _), choices) in places {
             if choices.iter().any(|choice| choice.given_up != choices[0].given_up) {
                 let place = (machine, scene, view(choices[0].settings));
-                panels.push(panel(&place, metric, &choices, &mut entries, panels.len(), name));
+                panels.push(panel(&place, metric, &choices, &mut entries, panels.len(), name, alone));
             }
         }
     }
@@ -100,6 +101,7 @@ fn panel(
     entries: &mut Vec<(String, Entry)>,
     pair: usize,
     name: Option<&dyn Fn(&str) -> String>,
+    alone: bool,
 ) -> Panel {
     let (scale, unit) = unit(choices.iter().map(|choice| choice.time).fold(0.0, f64::max));
     let mut series: Vec<Series> = Vec::new();
@@ -133,19 +135,22 @@ fn panel(
         (low - room, high + room)
     };
     let (low, high) = ends(|point| point.x.unwrap_or_default());
+    // Too much is too much of nothing.
+    let low = if metric.counts_surplus { 0.0 } else { low };
     let name = metric.name.replace('_', " ");
     let x = Axis { name, unit: metric.unit.into(), scale: Scale::Even, low, high };
     let (_, high) = ends(|point| point.y);
     let name = "time of all frames".to_owned();
     let y = Axis { name, unit: unit.into(), scale: Scale::Even, low: 0.0, high };
     let front = front(&all, metric.better);
+    // A setting of the scene goes by its value, and a machine that is the only one without saying.
+    let bare = view.split(' ').map(|pair| pair.split_once('=').map_or(pair, |(_, value)| value));
+    let on = if alone { String::new() } else { machine(place) };
+    let heading = [on, (*scene).to_owned(), bare.collect::<Vec<_>>().join(" ")];
+    let heading = heading.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
     series.insert(0, Series { style: Style::Front, entry: None, points: front });
     Panel {
-        heading: [machine(place).to_string(), (*scene).to_owned(), view.clone()]
-            .into_iter()
-            .filter(|word| !word.is_empty())
-            .collect::<Vec<_>>()
-            .join(", "),
+        heading,
         place: String::new(),
         file: format!("{place}-{scene}-{}{}", metric.name, view.replace([' ', '='], "-")),
         machine: (*place).to_owned(),

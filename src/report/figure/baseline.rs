@@ -58,9 +58,12 @@ fn panel(
     pair: usize,
 ) -> Panel {
     let mut series: Vec<Series> = Vec::new();
+    // Side by side about their place, for many are as fast as one another.
+    let beside = |entry: usize| 0.7 * ((entry as f64 + 0.5) / labels.len() as f64 - 0.5);
     for (entry, label) in labels.iter().enumerate() {
         let (mut ours, mut papers) = (Vec::new(), Vec::new());
-        for (x, choices) in views.iter().enumerate() {
+        for (place, choices) in views.iter().enumerate() {
+            let x = place as f64 + beside(entry);
             let Some(column) = choices.columns.iter().position(|metric| metric.name == METRIC) else {
                 continue;
             };
@@ -68,7 +71,7 @@ fn panel(
                 if let Some(value) = line.values[column] {
                     let note = choices.view.clone();
                     let (y, low, high) = (value.median, value.low, value.high);
-                    ours.push(Point { x: Some(x as f64), y, low, high, note });
+                    ours.push(Point { x: Some(x), y, low, high, note });
                 }
                 let fits = |figure: &&PaperFigure| {
                     figure.metric == METRIC
@@ -79,7 +82,7 @@ fn panel(
                 };
                 papers.extend(figures.iter().filter(fits).map(|figure| Point {
                     note: format!("{}, {}", figure.figure, figure.source),
-                    ..Point::bare(x as f64, figure.value)
+                    ..Point::bare(x, figure.value)
                 }));
             }
         }
@@ -118,7 +121,7 @@ fn says(panel: &Panel, labels: &[&str]) -> Option<String> {
     let ours = || plot.series.iter().filter(|series| series.style == Style::Scatter);
     let best = views.iter().enumerate().filter_map(|(x, view)| {
         let here = ours().flat_map(|series| series.points.iter().map(move |point| (series.entry, point)));
-        let here = here.filter(|(_, point)| point.x == Some(x as f64));
+        let here = here.filter(|(_, point)| point.x.is_some_and(|at| at.round() == x as f64));
         let (entry, point) = here.max_by(|a, b| a.1.y.total_cmp(&b.1.y))?;
         let on = if view.is_empty() { String::new() } else { format!(" on {view}") };
         Some(format!("{} {}{on}", labels[entry?], number(point.y)))

@@ -3,7 +3,7 @@
 use crate::report::Table;
 use crate::report::escape::attribute;
 use crate::report::figure::{
-    ACTIVITIES, Axis, Bars, Body, Field, Figure, Plot, Scale, Style, number, shares,
+    ACTIVITIES, Axis, Bars, Body, Field, Figure, Plot, Point, Scale, Style, number, shares,
 };
 use std::fmt::Write;
 
@@ -105,7 +105,7 @@ pub(super) fn numbers(figure: &Figure) -> String {
         let _ =
             write!(html, "<tbody><tr><th scope=\"rowgroup\" colspan=\"99\">{}", attribute(&panel.heading));
         match &panel.body {
-            Body::Plot(plot) if plot.series.iter().any(|series| series.style == Style::Scatter) => {
+            Body::Plot(plot) if plot.series.iter().any(|series| series.style == Style::Front) => {
                 scatter(&mut html, plot, figure);
             }
             Body::Plot(plot) => curves(&mut html, plot, figure),
@@ -131,13 +131,13 @@ fn title(axis: &Axis) -> String {
 
 /// A line a curve, a column a place on the horizontal axis; papers' points stand in lines of their own.
 fn curves(html: &mut String, plot: &Plot, figure: &Figure) {
-    let mut places: Vec<f64> = plot
-        .series
-        .iter()
-        .filter(|s| s.entry.is_some())
-        .flat_map(|s| &s.points)
-        .filter_map(|p| p.x)
-        .collect();
+    // Points that belong to a name may stand beside it.
+    let place = |point: &Point| match &plot.x.scale {
+        Scale::Names(_) => point.x.map(f64::round),
+        _ => point.x,
+    };
+    let shown = plot.series.iter().filter(|series| series.entry.is_some());
+    let mut places: Vec<f64> = shown.flat_map(|series| &series.points).filter_map(place).collect();
     places.sort_by(f64::total_cmp);
     places.dedup();
     let _ = write!(html, "<tr><th scope=\"col\">{} by {}", title(&plot.y), attribute(&plot.x.name));
@@ -156,7 +156,7 @@ fn curves(html: &mut String, plot: &Plot, figure: &Figure) {
         };
         let _ = write!(html, "<tr><th scope=\"row\">{}", attribute(&words));
         for at in &places {
-            let point = series.points.iter().find(|point| point.x == Some(*at));
+            let point = series.points.iter().find(|point| place(point) == Some(*at));
             let _ = match point {
                 None => write!(html, "<td>"),
                 Some(point) if point.high > point.low => write!(

@@ -143,10 +143,10 @@ fn panel(
     let name = "time of all frames".to_owned();
     let y = Axis { name, unit: unit.into(), scale: Scale::Even, low: 0.0, high };
     let front = front(&all, metric.better);
-    // A setting of the scene goes by its value, and a machine that is the only one without saying.
-    let bare = view.split(' ').map(|pair| pair.split_once('=').map_or(pair, |(_, value)| value));
+    // A camera path goes by its name, and a machine that is the only one without saying.
+    let short = view.split(' ').map(|pair| pair.strip_prefix("scene.path=").unwrap_or(bare(pair)));
     let on = if alone { String::new() } else { machine(place) };
-    let heading = [on, (*scene).to_owned(), bare.collect::<Vec<_>>().join(" ")];
+    let heading = [on, (*scene).to_owned(), short.collect::<Vec<_>>().join(" ")];
     let heading = heading.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
     series.insert(0, Series { style: Style::Front, entry: None, points: front });
     Panel {

@@ -1,6 +1,6 @@
 //! Speedup of tests over a baseline's: where every test is serial, this is what they are compared by.
 
-use super::words::{machine, number};
+use super::words::{bare, machine, number};
 use super::{Axis, Body, Entry, Figure, Material, Panel, Plot, Point, Scale, Series, Style};
 use crate::record::{PaperFigure, settings_pairs};
 use crate::report::choices::Choices;
@@ -93,13 +93,18 @@ fn panel(
         }
     }
     let most = series.iter().flat_map(|series| &series.points).map(|point| point.high).fold(1.0, f64::max);
-    let bare = |view: &str| match view.split_once('=') {
-        Some((_, value)) if !value.contains('=') => value.to_owned(),
-        _ => view.to_owned(),
+    // One setting of the scene is named by the axis, several each by themselves.
+    let pairs: Vec<_> = views.iter().map(|choices| choices.view.split_once('=')).collect();
+    let one = pairs.iter().all(|pair| pair.is_some_and(|(_, value)| !value.contains('=')));
+    let (axis, names) = match pairs.first().copied().flatten().filter(|_| one) {
+        Some((key, _)) => {
+            (setting(key), pairs.iter().flatten().map(|(_, value)| (*value).to_owned()).collect())
+        }
+        None => ("scene".to_owned(), views.iter().map(|choices| choices.view.clone()).collect()),
     };
-    let names = Scale::Names(views.iter().map(|choices| bare(&choices.view)).collect());
+    let names = Scale::Names(names);
     let last = views.len() as f64 - 0.5;
-    let x = Axis { name: "camera path".into(), unit: String::new(), scale: names, low: -0.5, high: last };
+    let x = Axis { name: axis, unit: String::new(), scale: names, low: -0.5, high: last };
     let name = "speedup over baseline".to_owned();
     let y = Axis { name, unit: "x".into(), scale: Scale::Even, low: 0.0, high: most * 1.05 };
     Panel {
@@ -111,6 +116,14 @@ fn panel(
         pair,
         note: String::new(),
         body: Body::Plot(Plot { x, y, series }),
+    }
+}
+
+/// A setting of the scene in words.
+fn setting(key: &str) -> String {
+    match bare(key) {
+        "path" => "camera path".to_owned(),
+        key => key.replace('_', " "),
     }
 }
 

@@ -14,6 +14,7 @@ use crate::geometry::{BoxTest, Camera, Frustum, Kernel};
 use crate::job::cull_boxes::{BoxField, Costs, Frame, Way, camera, plain, random_boxes};
 use crate::machine::{Machine, Simulated, Threads};
 use crate::record::THREADS;
+use crate::record::statistics::median;
 use crate::scheme::tiles::Scheme;
 use crate::structure::{BitMask, BoxTree, cull};
 use std::borrow::Borrow;
@@ -194,7 +195,7 @@ impl<H: Borrow<M>, M: Machine> BoxSubject<H, M> {
             }
         }
         let frames = times.len() as f64;
-        let (time, stream) = (median(times), median(streams));
+        let (time, stream) = (median(&times).unwrap_or_default(), median(&streams).unwrap_or_default());
         samples.push(Sample::of_path("time_per_box", time / self.field.len() as f64));
         samples.push(Sample::of_path("bytes_per_second", self.field.bytes() as f64 / (time * 1e-9)));
         samples.push(Sample::of_path("stream_time", stream));
@@ -205,12 +206,6 @@ impl<H: Borrow<M>, M: Machine> BoxSubject<H, M> {
         samples.extend(traversal.sample());
         Ok(samples)
     }
-}
-
-/// The middle of some times, of which there is one at least.
-fn median(mut times: Vec<f64>) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times[times.len() / 2]
 }
 
 impl<H: Borrow<M>, M: Machine> Subject for BoxSubject<H, M> {

@@ -1,71 +1,19 @@
-//! The vector unit of 64-bit ARM: 4 lanes.
+//! The kernel of 64-bit ARM.
 
-use super::lanes::{self, Lanes};
-use super::{BlockSides, Code, View};
+use super::{BlockSides, Code, View, kernels};
 use crate::geometry::BoxBlock;
-use std::arch::aarch64::*;
-
-#[derive(Clone, Copy)]
-struct Lanes4(float32x4_t);
-
-// SAFETY (all methods): every 64-bit ARM processor with an operating system has the unit; `load` reads 4 floats
-// from a multiple of 4 below 64.
-impl Lanes for Lanes4 {
-    const LEN: usize = 4;
-    #[inline(always)]
-    unsafe fn splat(value: f32) -> Self {
-        // SAFETY: as said above.
-        Self(unsafe { vdupq_n_f32(value) })
-    }
-    #[inline(always)]
-    unsafe fn load(column: &[f32; BoxBlock::LEN], from: usize) -> Self {
-        // SAFETY: as said above.
-        Self(unsafe { vld1q_f32(column.as_ptr().add(from)) })
-    }
-    #[inline(always)]
-    unsafe fn add(self, other: Self) -> Self {
-        // SAFETY: as said above.
-        Self(unsafe { vaddq_f32(self.0, other.0) })
-    }
-    #[inline(always)]
-    unsafe fn sub(self, other: Self) -> Self {
-        // SAFETY: as said above.
-        Self(unsafe { vsubq_f32(self.0, other.0) })
-    }
-    #[inline(always)]
-    unsafe fn mul(self, other: Self) -> Self {
-        // SAFETY: as said above.
-        Self(unsafe { vmulq_f32(self.0, other.0) })
-    }
-    #[inline(always)]
-    unsafe fn max(self, other: Self) -> Self {
-        // Not `vmaxq_f32`, which makes a NaN of one NaN.
-        // SAFETY: as said above.
-        Self(unsafe { vbslq_f32(vcgtq_f32(self.0, other.0), self.0, other.0) })
-    }
-    #[inline(always)]
-    unsafe fn abs(self) -> Self {
-        // SAFETY: as said above.
-        Self(unsafe { vabsq_f32(self.0) })
-    }
-    #[inline(always)]
-    unsafe fn greater(self, other: Self) -> u64 {
-        const BITS: [u32; 4] = [1, 2, 4, 8];
-        // SAFETY: as said above.
-        unsafe { u64::from(vaddvq_u32(vandq_u32(vcgtq_f32(self.0, other.0), vld1q_u32(BITS.as_ptr())))) }
-    }
-}
+use crate::geometry::lanes::arm::Lanes4;
 
 pub(super) const NEON: Code = {
     #[target_feature(enable = "neon")]
     fn visible(view: &View, blocks: &[BoxBlock], words: &mut [u64]) {
         // SAFETY: this function has the feature.
-        unsafe { lanes::visible::<Lanes4>(view, blocks, words) }
+        unsafe { kernels::visible::<Lanes4>(view, blocks, words) }
     }
     #[target_feature(enable = "neon")]
     fn sides(view: &View, block: &BoxBlock) -> BlockSides {
         // SAFETY: this function has the feature.
-        unsafe { lanes::sides::<Lanes4>(view, block) }
+        unsafe { kernels::sides::<Lanes4>(view, block) }
     }
     Code { name: "neon", is_there: || true, visible, sides }
 };

@@ -15,7 +15,7 @@
 
 #[cfg(target_arch = "aarch64")]
 mod arm;
-mod lanes;
+mod kernels;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
@@ -122,7 +122,7 @@ const ALL: &[Code] = &[
     x86::SSE2,
     #[cfg(target_arch = "aarch64")]
     arm::NEON,
-    lanes::SCALAR,
+    kernels::SCALAR,
 ];
 
 impl Kernel {
@@ -133,7 +133,7 @@ impl Kernel {
 
     /// The widest.
     pub fn best() -> Self {
-        Self::all().next().unwrap_or(Self(&lanes::SCALAR))
+        Self::all().next().unwrap_or(Self(&kernels::SCALAR))
     }
 
     /// The one of that name; `None` if this processor has none.

@@ -7,8 +7,11 @@
 
 mod slabs;
 mod triangle;
+mod triangle_pair;
 
 use glam::{DVec3, Vec3};
+
+pub use triangle_pair::{GridPoint, triangles_meet};
 
 use super::{Aabb, Camera, KDop, Obb, PLANE_COUNT, Sphere, Volume};
 

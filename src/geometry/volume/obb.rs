@@ -1,5 +1,7 @@
 //! Oriented boxes (Paper I sec. 4).
 
+mod extremes;
+
 use glam::{DMat3, DVec3, Vec3};
 
 use super::{Placed, Volume};
@@ -56,6 +58,17 @@ impl Obb {
         let frames = [Vec3::AXES].into_iter().chain(spread).chain(offered.iter().copied());
         let boxes = frames.filter_map(|axes| Self::with_axes(axes, points));
         boxes.min_by(|a, b| a.surface().total_cmp(&b.surface())).unwrap_or(Self::EMPTY)
+    }
+
+    /// A tight box around some points, for many points at a time: of the axes of the world, those of the points'
+    /// covariance, and those that fourteen extreme points suggest (see [`extremes`]), the ones with the
+    /// least surface, turned about the thinnest side as far as that helps. Its axes are at right angles but for
+    /// rounding. Empty if there are none.
+    pub fn tight(points: &[Vec3]) -> Self {
+        extremes::axes(points, principal_axes(points))
+            .into_iter()
+            .find_map(|axes| Self::with_axes(axes, points))
+            .unwrap_or(Self::EMPTY)
     }
 
     /// Unit vectors along its edges.

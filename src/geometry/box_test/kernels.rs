@@ -1,32 +1,9 @@
-//! The test itself, over as many boxes at a time as a vector has lanes; and one lane, which any processor has.
+//! The test itself, over as many boxes at a time as a vector has lanes.
 
 use super::{BlockSides, Code, View};
 use crate::geometry::culling::ROUNDING;
+use crate::geometry::lanes::Lanes;
 use crate::geometry::{BoxBlock, PLANE_COUNT};
-
-/// A vector of f32 lanes.
-///
-/// # Safety of the methods
-/// The processor has the vector unit. Each comes down to one or two instructions once it is inlined into a
-/// function that has the unit's target feature.
-pub(super) trait Lanes: Copy {
-    /// How many lanes; it divides 64.
-    const LEN: usize;
-    /// All lanes alike.
-    unsafe fn splat(value: f32) -> Self;
-    /// Lanes from memory: `from` is a multiple of [`Lanes::LEN`] below 64.
-    unsafe fn load(column: &[f32; BoxBlock::LEN], from: usize) -> Self;
-    unsafe fn add(self, other: Self) -> Self;
-    unsafe fn sub(self, other: Self) -> Self;
-    unsafe fn mul(self, other: Self) -> Self;
-    /// The greater of each pair; `other`'s if one is NaN.
-    unsafe fn max(self, other: Self) -> Self;
-    unsafe fn abs(self) -> Self;
-    /// Asks for a block that will be read soon, where the processor can be asked.
-    fn prefetch(_block: &BoxBlock) {}
-    /// Bit `i` is set when lane `i` is greater than `other`'s.
-    unsafe fn greater(self, other: Self) -> u64;
-}
 
 /// Coordinates relative to the eye of the boxes from `from` on: by axis, then least and greatest.
 #[inline(always)]
@@ -81,7 +58,7 @@ pub(super) unsafe fn visible<L: Lanes>(view: &View, blocks: &[BoxBlock], words: 
     for (i, (block, word)) in blocks.iter().zip(words).enumerate() {
         // Six columns at a time are too many short streams for the processor to foresee.
         if let Some(soon) = blocks.get(i + AHEAD) {
-            L::prefetch(soon);
+            soon.columns().for_each(|column| L::prefetch(column));
         }
         let mut hidden = 0;
         for from in (0..BoxBlock::LEN).step_by(L::LEN) {
@@ -120,42 +97,6 @@ pub(super) unsafe fn sides<L: Lanes>(view: &View, block: &BoxBlock) -> BlockSide
         }
     }
     BlockSides { visible: !hidden, inside: inside & !hidden }
-}
-
-impl Lanes for f32 {
-    const LEN: usize = 1;
-    #[inline(always)]
-    unsafe fn splat(value: f32) -> Self {
-        value
-    }
-    #[inline(always)]
-    unsafe fn load(column: &[f32; BoxBlock::LEN], from: usize) -> Self {
-        column[from]
-    }
-    #[inline(always)]
-    unsafe fn add(self, other: Self) -> Self {
-        self + other
-    }
-    #[inline(always)]
-    unsafe fn sub(self, other: Self) -> Self {
-        self - other
-    }
-    #[inline(always)]
-    unsafe fn mul(self, other: Self) -> Self {
-        self * other
-    }
-    #[inline(always)]
-    unsafe fn max(self, other: Self) -> Self {
-        if self > other { self } else { other }
-    }
-    #[inline(always)]
-    unsafe fn abs(self) -> Self {
-        f32::abs(self)
-    }
-    #[inline(always)]
-    unsafe fn greater(self, other: Self) -> u64 {
-        u64::from(self > other)
-    }
 }
 
 pub(super) const SCALAR: Code = Code {

@@ -9,6 +9,7 @@ mod placed_leaves;
 mod skip_tree;
 mod split;
 mod statistics;
+pub mod volume_tree;
 mod volumes;
 
 pub use aabb_tree::{AabbTree, AabbTreeNode};
@@ -19,6 +20,7 @@ pub use placed_leaves::{PlacedLeaf, PlacedLeaves};
 pub use skip_tree::{SkipNode, SkipTree};
 pub use split::{Leaf, Split, SplitError};
 pub use statistics::TreeStatistics;
+pub use volume_tree::{VolumeTree, VolumeTreeError};
 pub use volumes::{VOLUME_KINDS, VolumeKind, Volumes};
 
 use thiserror::Error;

@@ -40,7 +40,7 @@ pub trait Overlap: Volume {
 }
 
 /// Eight volumes as a structure of arrays.
-pub trait Eight<V: Overlap>: Copy + Send + Sync + 'static {
+pub trait Eight<V: Overlap>: Copy + std::fmt::Debug + Send + Sync + 'static {
     /// Eight of what nothing should be tested against.
     const UNUSED: Self;
 

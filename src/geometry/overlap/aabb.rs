@@ -1,7 +1,7 @@
 //! Axis-aligned boxes: six comparisons (Paper II sec. 5, P2-17). A box that was turned on the way is taken for the
 //! aligned box around it, which is up to 1.7 times as wide.
 
-use super::{Columns, Eight, Overlap, ROUNDING, Way};
+use super::{Columns, Eight, Overlap, ROUNDING, Way, load};
 use crate::geometry::Aabb;
 use crate::geometry::lanes::{Lanes, Unit, on_unit};
 use glam::Vec3;
@@ -53,7 +53,7 @@ impl Overlap for Aabb {
     fn apart(&self, moved: &MovedAabb) -> bool {
         let numbers = numbers(self);
         // SAFETY: one lane needs no vector unit.
-        unsafe { separated::<f32>(moved, |i| numbers[i]) != 0 }
+        unsafe { separated::<f32>(moved, &numbers) != 0 }
     }
 }
 
@@ -81,23 +81,23 @@ unsafe fn eight_by<L: Lanes>(moved: &MovedAabb, columns: &[[f32; 8]; NUMBERS]) -
     let mut apart = 0;
     for from in (0..8).step_by(L::LEN) {
         // SAFETY: `from` steps by the lanes' number below 8; the processor is the caller's.
-        apart |= unsafe { separated::<L>(moved, |i| L::load(&columns[i], from)) << from };
+        apart |= unsafe { separated::<L>(moved, &load(columns, from)) << from };
     }
     apart as u8
 }
 
-/// Which boxes an axis separates from the moved one; `number` gets a number of all.
+/// Which boxes an axis separates from the moved one.
 ///
 /// # Safety
 /// The processor has the lanes' vector unit.
 #[inline(always)]
-unsafe fn separated<L: Lanes>(moved: &MovedAabb, number: impl Fn(usize) -> L) -> u64 {
+unsafe fn separated<L: Lanes>(moved: &MovedAabb, numbers: &[L; NUMBERS]) -> u64 {
     let mut apart = 0;
     for axis in 0..3 {
         // SAFETY: the processor is the caller's.
         unsafe {
-            let between = number(axis).sub(L::splat(moved.centre[axis])).abs();
-            let half = number(3 + axis);
+            let between = numbers[axis].sub(L::splat(moved.centre[axis])).abs();
+            let half = numbers[3 + axis];
             let slack = between.add(half).mul(L::splat(ROUNDING));
             apart |= between.greater(half.add(L::splat(moved.half[axis])).add(slack));
         }

@@ -1,7 +1,7 @@
 //! k-DOPs: an interval a direction. One that was turned on the way is taken for the k-DOP around the three slabs
 //! along its own axes: with a rotation little is left of what the other directions were for.
 
-use super::{Columns, Eight, Overlap, ROUNDING, Way};
+use super::{Columns, Eight, Overlap, ROUNDING, Way, load};
 use crate::geometry::lanes::{Lanes, Unit, on_unit};
 use crate::geometry::{KDop, Volume};
 use glam::{Vec3, Vec3A};
@@ -52,17 +52,17 @@ impl<const D: usize> KDop<D> {
     }
 }
 
-/// Which k-DOPs a direction separates from the moved one; `number` gets a number of all.
+/// Which k-DOPs a direction separates from the moved one.
 ///
 /// # Safety
 /// The processor has the lanes' vector unit.
 #[inline(always)]
-unsafe fn separated<L: Lanes, const D: usize>(moved: &MovedKDop<D>, number: impl Fn(usize) -> L) -> u64 {
+unsafe fn separated<L: Lanes, const D: usize, const N: usize>(moved: &MovedKDop<D>, numbers: &[L; N]) -> u64 {
     let mut apart = 0;
     for i in 0..D {
         // SAFETY: the processor is the caller's.
         unsafe {
-            let (least, greatest) = (number(2 * i), number(2 * i + 1));
+            let (least, greatest) = (numbers[2 * i], numbers[2 * i + 1]);
             let slack = least.abs().add(greatest.abs()).mul(L::splat(ROUNDING));
             apart |= least.sub(slack).greater(L::splat(moved.ends[1][i]));
             apart |= L::splat(moved.ends[0][i]).greater(greatest.add(slack));
@@ -101,7 +101,7 @@ macro_rules! kdops {
                 fn apart(&self, moved: &Self::Moved) -> bool {
                     let numbers: [f32; $numbers] = self.numbers();
                     // SAFETY: one lane needs no vector unit.
-                    unsafe { separated::<f32, $directions>(moved, |i| numbers[i]) != 0 }
+                    unsafe { separated::<f32, $directions, $numbers>(moved, &numbers) != 0 }
                 }
             }
 
@@ -132,7 +132,7 @@ macro_rules! kdops {
                 let mut apart = 0;
                 for from in (0..8).step_by(L::LEN) {
                     // SAFETY: `from` steps by the lanes' number below 8; the processor is the caller's.
-                    apart |= unsafe { separated::<L, $directions>(moved, |i| L::load(&columns[i], from)) << from };
+                    apart |= unsafe { separated::<L, $directions, $numbers>(moved, &load(columns, from)) << from };
                 }
                 apart as u8
             }

@@ -14,7 +14,7 @@ mod kdop;
 mod obb;
 mod sphere;
 
-use super::lanes::Unit;
+use super::lanes::{Lanes, Unit};
 use super::{Rigid, Volume};
 use glam::{Mat3A, Vec3, Vec3A};
 
@@ -109,6 +109,22 @@ impl<const N: usize> Columns<N> {
         for (column, number) in self.0.iter_mut().zip(numbers) {
             column[lane] = number;
         }
+    }
+}
+
+/// The numbers of the volumes from lane `from` on.
+///
+/// # Safety
+/// The processor has the lanes' vector unit, and there are as many lanes from there to 8.
+#[inline(always)]
+unsafe fn load<L: Lanes, const N: usize>(columns: &[[f32; 8]; N], from: usize) -> [L; N] {
+    // SAFETY: what the caller says.
+    unsafe {
+        let mut numbers = [L::splat(0.0); N];
+        for (number, column) in numbers.iter_mut().zip(columns) {
+            *number = L::load(column, from);
+        }
+        numbers
     }
 }
 

@@ -1,7 +1,7 @@
 //! Oriented boxes: fifteen axes, of which three faces of each and the cross products of their edges may separate
 //! them (Paper II sec. 5; some 200 operations, P2-17).
 
-use super::{Columns, Eight, Overlap, ROUNDING, Way};
+use super::{Columns, Eight, Overlap, ROUNDING, Way, load};
 use crate::geometry::lanes::{Lanes, Unit, on_unit};
 use crate::geometry::{Obb, Volume};
 use glam::{Vec3, Vec3A};
@@ -52,9 +52,8 @@ impl Overlap for Obb {
 
     #[inline]
     fn apart(&self, moved: &MovedObb) -> bool {
-        let numbers = self.numbers();
         // SAFETY: one lane needs no vector unit.
-        unsafe { separated::<f32>(moved, |i| numbers[i]) != 0 }
+        unsafe { separated::<f32>(moved, &self.numbers()) != 0 }
     }
 }
 
@@ -82,7 +81,7 @@ unsafe fn eight_by<L: Lanes>(moved: &MovedObb, columns: &[[f32; 8]; NUMBERS]) ->
     let mut apart = 0;
     for from in (0..8).step_by(L::LEN) {
         // SAFETY: `from` steps by the lanes' number below 8; the processor is the caller's.
-        apart |= unsafe { separated::<L>(moved, |i| L::load(&columns[i], from)) << from };
+        apart |= unsafe { separated::<L>(moved, &load(columns, from)) << from };
     }
     apart as u8
 }
@@ -90,48 +89,63 @@ unsafe fn eight_by<L: Lanes>(moved: &MovedObb, columns: &[[f32; 8]; NUMBERS]) ->
 /// The other two axes.
 const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
-/// Which boxes an axis separates from the moved one, by as many as there are lanes; `number` gets a number of all.
+/// A product of vectors, of which one is the same in all lanes.
 ///
 /// # Safety
 /// The processor has the lanes' vector unit.
 #[inline(always)]
-unsafe fn separated<L: Lanes>(moved: &MovedObb, number: impl Fn(usize) -> L) -> u64 {
+unsafe fn dot<L: Lanes>(x: L, y: L, z: L, fixed: &[f32; 3]) -> L {
+    // SAFETY: the processor is the caller's.
+    unsafe { x.mul(L::splat(fixed[0])).add(y.mul(L::splat(fixed[1]))).add(z.mul(L::splat(fixed[2]))) }
+}
+
+/// Which boxes an axis separates from the moved one, by as many as there are lanes. Loops and no closures: a closure
+/// is not compiled for the vector unit.
+///
+/// # Safety
+/// The processor has the lanes' vector unit.
+#[inline(always)]
+unsafe fn separated<L: Lanes>(moved: &MovedObb, numbers: &[L; NUMBERS]) -> u64 {
     let all = u64::MAX >> (64 - L::LEN);
+    let [x, y, z, ax, ay, az, bx, by, bz, cx, cy, cz, half @ ..] = *numbers;
+    let axes = [[ax, ay, az], [bx, by, bz], [cx, cy, cz]];
     // SAFETY: the processor is the caller's.
     unsafe {
-        let dot = |v: [L; 3], fixed: &[f32; 3]| {
-            let [x, y, z] = [0, 1, 2].map(|k| v[k].mul(L::splat(fixed[k])));
-            x.add(y).add(z)
-        };
-        let of = |first: usize| [0, 1, 2].map(|k| number(first + k));
-        let centre = of(0);
-        let half = of(12);
-        let between = [0, 1, 2].map(|k| centre[k].sub(L::splat(moved.centre[k])));
-        let size = |v: [L; 3]| v[0].abs().add(v[1].abs()).add(v[2].abs());
-        let slack = size(between).add(size(half)).mul(L::splat(ROUNDING)).add(L::splat(moved.slack));
-        // What each axis of the one has of each axis of the other.
-        let axes = [of(3), of(6), of(9)];
-        let turn = moved.axes.map(|own| axes.map(|axis| dot(axis, &own)));
-        let abs = turn.map(|row| row.map(|x| x.abs()));
+        let x = x.sub(L::splat(moved.centre[0]));
+        let y = y.sub(L::splat(moved.centre[1]));
+        let z = z.sub(L::splat(moved.centre[2]));
+        let size = x.abs().add(y.abs()).add(z.abs());
+        let extent = half[0].abs().add(half[1].abs()).add(half[2].abs());
+        let slack = size.add(extent).mul(L::splat(ROUNDING)).add(L::splat(moved.slack));
 
+        // What each axis of the one has of each axis of the other.
+        let none = L::splat(0.0);
+        let (mut turn, mut abs, mut along) = ([[none; 3]; 3], [[none; 3]; 3], [none; 3]);
         let mut apart = 0;
-        let along = [0, 1, 2].map(|i| dot(between, &moved.axes[i]));
         for i in 0..3 {
-            let [a, b, c] = [0, 1, 2].map(|k| half[k].mul(abs[i][k]));
-            let reach = a.add(b).add(c).add(L::splat(moved.half[i])).add(slack);
-            apart |= along[i].abs().greater(reach);
+            for j in 0..3 {
+                let [u, v, w] = axes[j];
+                turn[i][j] = dot(u, v, w, &moved.axes[i]);
+                abs[i][j] = turn[i][j].abs();
+            }
+            along[i] = dot(x, y, z, &moved.axes[i]);
+            let other = half[0].mul(abs[i][0]).add(half[1].mul(abs[i][1])).add(half[2].mul(abs[i][2]));
+            apart |= along[i].abs().greater(other.add(L::splat(moved.half[i])).add(slack));
         }
         for j in 0..3 {
-            let [x, y, z] = [0, 1, 2].map(|k| between[k].mul(axes[j][k]));
-            let reach = dot([abs[0][j], abs[1][j], abs[2][j]], &moved.half).add(half[j]).add(slack);
-            apart |= x.add(y).add(z).abs().greater(reach);
+            let [u, v, w] = axes[j];
+            let way = x.mul(u).add(y.mul(v)).add(z.mul(w));
+            let own = dot(abs[0][j], abs[1][j], abs[2][j], &moved.half);
+            apart |= way.abs().greater(own.add(half[j]).add(slack));
         }
         // Most pairs that are apart are so along a face.
         if apart == all {
             return all;
         }
-        for (i, [i1, i2]) in OTHERS.into_iter().enumerate() {
-            for (j, [j1, j2]) in OTHERS.into_iter().enumerate() {
+        for i in 0..3 {
+            let [i1, i2] = OTHERS[i];
+            for j in 0..3 {
+                let [j1, j2] = OTHERS[j];
                 let way = along[i2].mul(turn[i1][j]).sub(along[i1].mul(turn[i2][j]));
                 let own =
                     abs[i2][j].mul(L::splat(moved.half[i1])).add(abs[i1][j].mul(L::splat(moved.half[i2])));

@@ -1,6 +1,6 @@
 //! Spheres: one comparison, and no rotation matters.
 
-use super::{Columns, Eight, Overlap, ROUNDING, Way};
+use super::{Columns, Eight, Overlap, ROUNDING, Way, load};
 use crate::geometry::Sphere;
 use crate::geometry::lanes::{Lanes, Unit, on_unit};
 use glam::Vec3;
@@ -39,7 +39,7 @@ impl Overlap for Sphere {
         let [x, y, z] = self.centre.to_array();
         let numbers = [x, y, z, self.radius];
         // SAFETY: one lane needs no vector unit.
-        unsafe { separated::<f32>(moved, |i| numbers[i]) != 0 }
+        unsafe { separated::<f32>(moved, &numbers) != 0 }
     }
 }
 
@@ -68,23 +68,27 @@ unsafe fn eight_by<L: Lanes>(moved: &MovedSphere, columns: &[[f32; 8]; NUMBERS])
     let mut apart = 0;
     for from in (0..8).step_by(L::LEN) {
         // SAFETY: `from` steps by the lanes' number below 8; the processor is the caller's.
-        apart |= unsafe { separated::<L>(moved, |i| L::load(&columns[i], from)) << from };
+        apart |= unsafe { separated::<L>(moved, &load(columns, from)) << from };
     }
     apart as u8
 }
 
-/// Which spheres are apart from the moved one; `number` gets a number of all.
+/// Which spheres are apart from the moved one.
 ///
 /// # Safety
 /// The processor has the lanes' vector unit.
 #[inline(always)]
-unsafe fn separated<L: Lanes>(moved: &MovedSphere, number: impl Fn(usize) -> L) -> u64 {
+unsafe fn separated<L: Lanes>(moved: &MovedSphere, numbers: &[L; NUMBERS]) -> u64 {
     // SAFETY: the processor is the caller's.
     unsafe {
-        let [x, y, z] = [0, 1, 2].map(|k| number(k).sub(L::splat(moved.centre[k])));
+        let [x, y, z] = [
+            numbers[0].sub(L::splat(moved.centre[0])),
+            numbers[1].sub(L::splat(moved.centre[1])),
+            numbers[2].sub(L::splat(moved.centre[2])),
+        ];
         let squared = x.mul(x).add(y.mul(y)).add(z.mul(z));
         let size = x.abs().add(y.abs()).add(z.abs());
-        let radius = number(3);
+        let radius = numbers[3];
         let slack = size.add(radius).mul(L::splat(ROUNDING));
         let reach = radius.add(L::splat(moved.radius)).add(slack);
         // A square that overflowed says nothing; one below the least number was no distance to speak of.

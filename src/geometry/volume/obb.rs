@@ -103,28 +103,31 @@ impl From<Aabb> for Obb {
 fn principal_axes(points: &[Vec3]) -> [Vec3; 3] {
     let count = points.len().max(1) as f64;
     let mean = points.iter().map(|point| point.as_dvec3()).sum::<DVec3>() / count;
-    let mut matrix = [[0.0f64; 3]; 3];
+    // On the diagonal, and off it.
+    let (mut squares, mut products) = (DVec3::ZERO, DVec3::ZERO);
     for point in points {
-        let at = (point.as_dvec3() - mean).to_array();
-        for (row, x) in matrix.iter_mut().zip(at) {
-            for (cell, y) in row.iter_mut().zip(at) {
-                *cell += x * y / count;
-            }
-        }
+        let at = point.as_dvec3() - mean;
+        squares += at * at;
+        products += at * DVec3::new(at.y, at.z, at.x);
     }
+    let (DVec3 { x: xx, y: yy, z: zz }, DVec3 { x: xy, y: yz, z: zx }) = (squares / count, products / count);
+    let mut matrix = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
     if matrix.iter().flatten().any(|cell| !cell.is_finite()) {
         return Vec3::AXES;
     }
     let mut axes = DVec3::AXES;
     // Eight sweeps are more than three coordinates ever need.
     for _ in 0..8 {
+        if [(0, 1), (0, 2), (1, 2)].iter().all(|&(p, q): &(usize, usize)| is_zero(&matrix, p, q)) {
+            break;
+        }
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            if matrix[p][q].abs() <= 1e-15 * (matrix[p][p] + matrix[q][q]) {
+            if is_zero(&matrix, p, q) {
                 continue;
             }
             let theta = (matrix[q][q] - matrix[p][p]) / (2.0 * matrix[p][q]);
-            let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-            let c = 1.0 / t.hypot(1.0);
+            let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+            let c = 1.0 / (t * t + 1.0).sqrt();
             let s = t * c;
             for row in &mut matrix {
                 (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
@@ -136,6 +139,11 @@ fn principal_axes(points: &[Vec3]) -> [Vec3; 3] {
         }
     }
     axes.map(DVec3::as_vec3)
+}
+
+/// Whether a matrix' cell is nothing beside the diagonal.
+fn is_zero(matrix: &[[f64; 3]; 3], p: usize, q: usize) -> bool {
+    matrix[p][q].abs() <= 1e-15 * (matrix[p][p] + matrix[q][q])
 }
 
 /// An oriented box relative to the eye.

@@ -3,8 +3,8 @@
 use super::*;
 use crate::geometry::contact::{self, Triangle};
 use crate::geometry::{Aabb, KDop, Obb, Sphere, Volume};
-use crate::machine::{Layout, Simulated};
 use crate::machine::simulated::Model;
+use crate::machine::{Layout, Simulated};
 use crate::scheme::tree::share;
 use glam::{DQuat, DVec3, Vec3};
 

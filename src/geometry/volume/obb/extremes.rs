@@ -6,18 +6,7 @@
 //! make a triangle, the points farthest on either side of it two tetrahedra; each edge of each face gives a
 //! candidate. Here the covariance's axes are a candidate too, and the best is turned about its thinnest side.
 
-use glam::Vec3;
-
-/// Seven directions of a cube, in opposite pairs with themselves: three faces and four corners.
-const DIRECTIONS: [Vec3; 7] = [
-    Vec3::X,
-    Vec3::Y,
-    Vec3::Z,
-    Vec3::new(1.0, 1.0, 1.0),
-    Vec3::new(1.0, 1.0, -1.0),
-    Vec3::new(1.0, -1.0, 1.0),
-    Vec3::new(1.0, -1.0, -1.0),
-];
+use glam::{Mat3A, Vec3, Vec3A, Vec4};
 
 /// Up to how many points all are looked at instead of the extreme ones.
 const FEW: usize = 24;
@@ -28,8 +17,10 @@ const TURNS: u32 = 15;
 /// Axes to try for a box around some points, the best first; the world's come last.
 pub(super) fn axes(points: &[Vec3], principal: [Vec3; 3]) -> [[Vec3; 3]; 2] {
     let extreme = extreme_points(points);
-    let mut best =
-        Best { points: if points.len() <= FEW { points } else { &extreme }, axes: Vec3::AXES, surface: 0.0 };
+    let measured: &[Vec3] = if points.len() <= FEW { points } else { &extreme };
+    let mut lanes = [Vec3A::ZERO; FEW];
+    lanes.iter_mut().zip(measured).for_each(|(lane, point)| *lane = (*point).into());
+    let mut best = Best { points: &lanes[..measured.len()], axes: Vec3::AXES, surface: 0.0 };
     best.surface = best.surface_of(Vec3::AXES);
     best.offer(principal);
     best.of_tetrahedra(&extreme);
@@ -39,39 +30,57 @@ pub(super) fn axes(points: &[Vec3], principal: [Vec3; 3]) -> [[Vec3; 3]; 2] {
 
 fn extreme_points(points: &[Vec3]) -> [Vec3; 14] {
     let first = points.first().copied().unwrap_or_default();
-    let mut ends = DIRECTIONS.map(|direction| [(direction.dot(first), first); 2]);
+    let mut extreme = [first; 14];
+    let (mut low, mut high) = (along(first), along(first));
     for &point in points {
-        for (direction, [least, greatest]) in DIRECTIONS.iter().zip(&mut ends) {
-            let along = direction.dot(point);
-            if along < least.0 {
-                *least = (along, point);
-            }
-            if along > greatest.0 {
-                *greatest = (along, point);
+        let now = along(point);
+        // Seldom: the extremes are found early.
+        let new = |i: usize| now[i].cmplt(low[i]) | now[i].cmpgt(high[i]);
+        if new(0).any() || new(1).any() {
+            for direction in 0..7 {
+                let (half, lane) = (direction / 4, direction % 4);
+                let here = now[half][lane];
+                if here < low[half][lane] {
+                    (low[half][lane], extreme[2 * direction]) = (here, point);
+                }
+                if here > high[half][lane] {
+                    (high[half][lane], extreme[2 * direction + 1]) = (here, point);
+                }
             }
         }
     }
-    std::array::from_fn(|i| ends[i / 2][i % 2].1)
+    extreme
+}
+
+/// How far a point lies along each of the seven directions: the four corners of a cube, and three faces.
+fn along(Vec3 { x, y, z }: Vec3) -> [Vec4; 2] {
+    let (plus, minus) = (x + y, x - y);
+    [Vec4::new(plus + z, plus - z, minus + z, minus - z), Vec4::new(x, y, z, 0.0)]
 }
 
 struct Best<'a> {
-    points: &'a [Vec3],
+    points: &'a [Vec3A],
     axes: [Vec3; 3],
     surface: f32,
 }
 
 impl Best<'_> {
+    /// The extents of the box with these axes.
+    fn extents(&self, axes: [Vec3; 3]) -> Vec3A {
+        // All three products of a point at once.
+        let along = Mat3A::from_cols_array_2d(&axes.map(|axis| axis.to_array())).transpose();
+        let (mut low, mut high) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
+        for point in self.points {
+            let at = along * *point;
+            (low, high) = (low.min(at), high.max(at));
+        }
+        high - low
+    }
+
     /// Half the surface of the box with these axes.
     fn surface_of(&self, axes: [Vec3; 3]) -> f32 {
-        let [x, y, z] = axes.map(|axis| {
-            let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-            for point in self.points {
-                let along = axis.dot(*point);
-                (low, high) = (low.min(along), high.max(along));
-            }
-            high - low
-        });
-        x * y + y * z + z * x
+        let extents = self.extents(axes);
+        extents.x * extents.y + extents.y * extents.z + extents.z * extents.x
     }
 
     /// Takes these axes if they are better; a number that is none is not.
@@ -123,12 +132,7 @@ impl Best<'_> {
 
     /// Tries turns about the axis along which the box is thinnest.
     fn turn(&mut self) {
-        let extents = self.axes.map(|axis| {
-            let along = self.points.iter().map(|point| axis.dot(*point));
-            let (low, high) =
-                along.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-            high - low
-        });
+        let extents = self.extents(self.axes);
         let thinnest = (0..3).min_by(|&i, &j| extents[i].total_cmp(&extents[j])).unwrap_or(0);
         let [u, v, w] = [1, 2, 0].map(|step| self.axes[(thinnest + step) % 3]);
         for turn in 1..=TURNS {

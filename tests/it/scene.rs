@@ -75,10 +75,10 @@ fn generated_scenes_never_change() {
         ("pompeii", 0xc2c0904729a42bc2),
         ("equal-centroids", 0xef050c113d07ec29),
         ("far-outlier", 0xf587e573ad9c701c),
-        ("robot", 0),
-        ("shell", 0),
-        ("shell-5", 0),
-        ("shell-1", 0),
+        ("robot", 0xe60df19119cbabe9),
+        ("shell", 0x34acd0d835864471),
+        ("shell-5", 0xcde249e75b4d4876),
+        ("shell-1", 0x42c60fd3d6159879),
     ];
     assert_eq!(prints, expected);
 }

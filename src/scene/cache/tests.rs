@@ -156,7 +156,8 @@ fn changed_meshes_of_robots_and_nearer_packages_are_noticed() {
     let link = format!("<link name='a'><visual><geometry>{mesh}</geometry></visual></link>");
     std::fs::write(&path, format!("<robot>{link}</robot>")).unwrap();
     write(&above.join("strip.ply"), 40_000, 100);
-    [&path, &above.join("package.xml")].map(|file| set_age(file, 100));
+    set_age(&path, 100);
+    set_age(&above.join("package.xml"), 100);
     let cache = Cache::in_folder(folder.path().join("cache"));
     let vertices = || {
         let (scene, origin) = cache.load(&path).unwrap();

@@ -179,7 +179,7 @@ fn faults_are_named_with_their_line() {
         (format!("<robot {}/>", "xmlns:a='a' ".repeat(65)), "65 times `xmlns`; expected at most 64"),
         (robot(""), "line 1: no link; expected one or more"),
         (robot(&two), "line 3: links \"a\" and \"b\" have no parent; expected one root"),
-        (robot(&circle), "line 4: by joint \"to b\", link \"b\" hangs on itself; expected a tree"),
+        (robot(&circle), "line 5: by joint \"to a\", link \"a\" hangs on itself; expected a tree"),
         (robot(&beside), "line 5: by joint \"to b\", link \"b\" hangs on itself"),
         (robot(&format!("{a}{a}")), "line 3: a second link \"a\""),
         (robot("<link/>"), "line 2: <link> without \"name\""),

@@ -2,7 +2,7 @@
 //! read once however often it is placed.
 //!
 //! Round shapes are made of triangles that lie within them: a cylinder has 40 sides (at most 0.31 % of its radius
-//! inside), a sphere 1280 triangles (at most 0.9 %).
+//! inside), a sphere 1280 triangles (at most 0.47 %).
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};

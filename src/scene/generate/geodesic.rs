@@ -34,7 +34,7 @@ const FACES: [[u32; 3]; 20] = [
 /// A closed sphere about the origin, radius in metres: each face of an icosahedron is cut into the square of
 /// `frequency` triangles on a plane grid and its vertices are moved out to the sphere. `20 f^2` triangles,
 /// `10 f^2 + 2` vertices, each shared by all triangles about it; all on the sphere, so that the triangles lie
-/// just within it.
+/// just within it: by at most `0.3 / f^2` of the radius.
 ///
 /// # Panics
 /// If `frequency` is 0.
@@ -110,6 +110,11 @@ mod tests {
             assert_eq!(sphere.positions.len() + sphere.triangles.len() - edges.len() / 2, 2);
             for position in &sphere.positions {
                 assert!((position.as_dvec3().length() / radius - 1.0).abs() < 1e-7, "{position}");
+            }
+            for corners in &sphere.triangles {
+                let [a, b, c] = corners.map(|vertex| sphere.positions[vertex as usize].as_dvec3());
+                let within = 1.0 - (b - a).cross(c - a).normalize().dot(a) / radius;
+                assert!(within > 0.0 && within < 0.3 / f64::from(frequency * frequency), "{within}");
             }
             let solid_angle: f64 = sphere.triangles.iter().map(|corners| seen(&sphere, *corners)).sum();
             assert!((solid_angle / (4.0 * std::f64::consts::PI) - 1.0).abs() < 1e-5, "{solid_angle}");

@@ -30,7 +30,7 @@ pub(super) struct Source {
 /// What a file was when it was read: enough to tell whether it has been changed since.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Stamp {
-    /// Its name, without folder.
+    /// Its name, without folder; of a neighbour the way to it from the folder of the scene's own file.
     pub(super) name: String,
     /// Its size, in bytes.
     pub(super) size: u64,
@@ -44,6 +44,15 @@ impl Stamp {
         let found = std::fs::metadata(path)?;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         Ok(Self { name, size: found.len(), modified: found.modified().ok() })
+    }
+
+    /// The file as it is now, under the name it was asked for by; one that is not there is empty and as old as
+    /// can be told, so that it is noticed when it comes.
+    pub(super) fn of_named(path: &Path, name: &str) -> Self {
+        match Self::of(path) {
+            Ok(found) => Self { name: name.to_string(), ..found },
+            Err(_) => Self { name: name.to_string(), size: 0, modified: Some(SystemTime::UNIX_EPOCH) },
+        }
     }
 }
 
@@ -80,11 +89,31 @@ impl Source {
 
     /// Reads a file that lies beside it.
     pub(super) fn neighbour(&self, name: &str) -> io::Result<Vec<u8>> {
-        let path = self.path.with_file_name(name);
+        let path = self.beside(name);
         let stamp = Stamp { name: name.to_string(), ..Stamp::of(&path)? };
         let bytes = std::fs::read(path)?;
-        self.stamps.borrow_mut().push(stamp);
+        self.note(stamp);
         Ok(bytes)
+    }
+
+    /// Where a file is whose way is told from this one's folder.
+    pub(super) fn beside(&self, name: &str) -> PathBuf {
+        self.path.with_file_name(name)
+    }
+
+    /// Whether there is a file beside it. What is read next may hang on that, so either is kept in mind.
+    pub(super) fn has(&self, name: &str) -> bool {
+        let path = self.beside(name);
+        self.note(Stamp::of_named(&path, name));
+        path.exists()
+    }
+
+    /// Keeps in mind that the scene depends on a file; the first stamp of each counts.
+    pub(super) fn note(&self, stamp: Stamp) {
+        let mut stamps = self.stamps.borrow_mut();
+        if stamps[1..].iter().all(|noted| noted.name != stamp.name) {
+            stamps.push(stamp);
+        }
     }
 
     /// Its name without folder and extensions.

@@ -24,6 +24,12 @@ const PLY: &str = "element vertex 4\nproperty float x\nproperty double y\nproper
     element face 2\nproperty list uchar int vertex_indices\nelement edge 1\nproperty int vertex1\nend_header\n";
 const FACET: &str =
     "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1e0 0\nendloop\nendfacet\n";
+const URDF: &str = "<?xml version=\"1.0\"?>\n<robot name=\"r\" xmlns:x=\"http://host\">\n<link name=\"a\">\n<collision>\n\
+    <origin xyz=\"0 0.5 -1\" rpy=\"0 1.57 0\"/>\n<geometry><box size=\"1 2 3\"/></geometry>\n</collision>\n</link>\n\
+    <link name=\"b\">\n<visual><geometry><mesh filename=\"text.stl\" scale=\"1 1 -2\"/></geometry></visual>\n\
+    <visual><geometry><cylinder radius=\"0.1\" length=\"4\"/></geometry></visual>\n\
+    <visual><geometry><sphere radius=\"2e0\"/></geometry></visual>\n</link>\n<!-- c -->\n\
+    <joint name=\"j\" type=\"fixed\">\n<parent link=\"a\"/>\n<child link=\"b\"/>\n<origin xyz=\"1 2 3\"/>\n</joint>\n</robot>\n";
 
 /// Good files, by name.
 fn good() -> Vec<(&'static str, Vec<u8>)> {
@@ -41,6 +47,8 @@ fn good() -> Vec<(&'static str, Vec<u8>)> {
         ("model.obj", OBJ.as_bytes().to_vec()),
         ("model.gltf", gltf(Some("AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA")).into_bytes()),
         ("model.glb", glb()),
+        // It names the text.stl above, as damaged as that is.
+        ("model.urdf", URDF.as_bytes().to_vec()),
         ("path.csv", CSV.as_bytes().to_vec()),
     ]
 }
@@ -254,6 +262,36 @@ fn many_small_things_take_memory_in_proportion() {
         let most = MOST_TIMES * text.len() + ALWAYS;
         assert!(attack(folder.path(), name, text.as_bytes(), most).unwrap(), "{name}");
     }
+}
+
+#[test]
+fn many_links_and_meshes_of_a_robot_take_memory_in_proportion() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("text.stl"), format!("solid\n{}endsolid\n", FACET.repeat(1000)))
+        .unwrap();
+    let mut text = "<robot>\n<link name='0'/>\n".to_string();
+    for number in 1..10_000 {
+        let shape = ["<sphere radius='1'/>", "<mesh filename='text.stl'/>"][number % 2];
+        text += &format!("<link name='{number}'><visual><geometry>{shape}</geometry></visual></link>\n");
+        text += &format!(
+            "<joint name='' type='fixed'><parent link='{}'/><child link='{number}'/></joint>\n",
+            number / 2
+        );
+    }
+    text += "</robot>\n";
+    let most = MOST_TIMES * text.len() + ALWAYS;
+    assert!(attack(folder.path(), "links.urdf", text.as_bytes(), most).unwrap());
+    let nested = text.replace("</robot>", &"<a b=''>".repeat(50_000));
+    let most = MOST_TIMES * nested.len() + ALWAYS;
+    assert!(!attack(folder.path(), "nested.urdf", nested.as_bytes(), most).unwrap());
+    // Every entity would double the one before.
+    let entities: String = (1..40).map(|i| format!("<!ENTITY a{i} '&a{0};&a{0};'>", i - 1)).collect();
+    let bomb = format!("<!DOCTYPE r [<!ENTITY a0 'a'>{entities}]>\n<robot><link name='&a39;'/></robot>");
+    assert!(!attack(folder.path(), "bomb.urdf", bomb.as_bytes(), ALWAYS).unwrap());
+    // Every element would take on the namespaces of all those around it.
+    let inherited: String = (0..5000).map(|i| format!("<a xmlns:n{i}='{i}'>")).collect();
+    let inherited = format!("<robot>{inherited}{}</robot>", "</a>".repeat(5000));
+    assert!(!attack(folder.path(), "inherited.urdf", inherited.as_bytes(), ALWAYS).unwrap());
 }
 
 #[test]

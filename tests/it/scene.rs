@@ -75,6 +75,10 @@ fn generated_scenes_never_change() {
         ("pompeii", 0xc2c0904729a42bc2),
         ("equal-centroids", 0xef050c113d07ec29),
         ("far-outlier", 0xf587e573ad9c701c),
+        ("robot", 0xe60df19119cbabe9),
+        ("shell", 0x34acd0d835864471),
+        ("shell-5", 0xcde249e75b4d4876),
+        ("shell-1", 0x42c60fd3d6159879),
     ];
     assert_eq!(prints, expected);
 }
@@ -87,7 +91,7 @@ fn unknown_names_and_formats_list_the_known() {
     let message = scene::load("model.step").unwrap_err().to_string();
     assert!(
         message.contains("model.step")
-            && message.contains(".gltf, .glb, .obj, .ply, .stl, or one of these with .gz"),
+            && message.contains(".gltf, .glb, .obj, .ply, .stl, .urdf, or one of these with .gz"),
         "{message}"
     );
     let message = scene::load("missing.obj").unwrap_err().to_string();
@@ -169,4 +173,26 @@ fn robot_links_from_stl() {
     let links = files.filter(|path| path.extension().is_some_and(|extension| extension == "stl"));
     let triangles = links.map(|path| scene::describe(&scene::load(path).unwrap()).unique_triangles);
     assert_eq!(triangles.sum::<usize>(), 6_934);
+}
+
+#[test]
+fn robots_from_urdf() {
+    for (file, links, deepest, depth, placed) in [
+        ("robots/fanuc/fanuc.urdf", 9, 8, 8, (7, 6_934)),
+        ("robots/panda/panda.urdf", 12, 11, 12, (11, 2_364)),
+    ] {
+        let Some(scene) = real(file) else { return };
+        let description = scene::describe(&scene);
+        assert_eq!((scene.instances(), description.depth, scene.roots.len()), (placed, depth, 1), "{file}");
+        // A link is what has no mesh; the geometries hang below, and are no deeper than the deepest link's.
+        let is_link = |node: &u32| scene.nodes[*node as usize].mesh.is_none();
+        let order = scene.depth_first();
+        assert_eq!(order.iter().filter(|node| is_link(node)).count(), links, "{file}");
+        let above = |node: &u32| scene.nodes[*node as usize].parent;
+        let depths = order.iter().filter(|node| is_link(node));
+        let depths = depths.map(|node| std::iter::successors(Some(*node), above).count());
+        assert_eq!(depths.max(), Some(deepest), "{file}");
+        let size = scene.bounds().size();
+        assert!(size.max_element() > 0.9 && size.max_element() < 2.0, "{file}: {size}");
+    }
 }

@@ -28,6 +28,14 @@ fn factories_give_one_tree_node_for_each_graph_node_and_are_unbalanced() {
 }
 
 #[test]
+fn the_robot_has_the_tree_of_the_paper() {
+    let statistics = statistics(&scene::by_name("robot").unwrap());
+    assert_eq!((statistics.nodes, statistics.depth), (102, 11));
+    let shallowest = statistics.leaf_depths.iter().position(|leaves| *leaves > 0);
+    assert!(shallowest == Some(1) && statistics.max_heaviest_share > 0.9, "{statistics:?}");
+}
+
+#[test]
 fn real_scenes_give_valid_trees() {
     let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/scenes"));
     for (file, triangles) in [

@@ -3,8 +3,9 @@
 //!
 //! Invariant: what comes out of the cache is, bit for bit, what parsing the file would give, or nothing.
 //! 1. The kept file is found by the scene's absolute path, and says which files it was made from: name,
-//!    size and time of last change of the scene's and, for glTF, of its buffers'. If one of them is another
-//!    now, it is stale.
+//!    size and time of last change of the scene's own, for glTF of its buffers, for URDF of its meshes and of
+//!    all files that were looked for on the way to them, found or not. If one of them is another now, or is
+//!    there that was not, it is stale.
 //! 2. It ends with a checksum, and begins with the version of its layout and of this program: damaged,
 //!    cut and foreign files are passed over, and what was decoded is validated like a parsed scene.
 //! 3. It is written under a temporary name and renamed, so nobody sees half of it, and of two
@@ -129,10 +130,7 @@ fn fetch(kept: &Path, path: &Path) -> Option<Scene> {
     let bytes = std::fs::read(kept).ok()?;
     let (stamps, mut scene) = layout::decode(&bytes, &std::path::absolute(path).ok()?)?;
     let (own, neighbours) = stamps.split_first()?;
-    let unchanged = |stamp: &Stamp| {
-        let now = Stamp::of(&path.with_file_name(&stamp.name));
-        now.is_ok_and(|now| (now.size, now.modified) == (stamp.size, stamp.modified))
-    };
+    let unchanged = |stamp: &Stamp| Stamp::of_named(&path.with_file_name(&stamp.name), &stamp.name) == *stamp;
     if *own != now || !neighbours.iter().all(unchanged) {
         return None;
     }

@@ -145,6 +145,41 @@ fn changed_buffers_of_gltf_are_noticed() {
 }
 
 #[test]
+fn changed_meshes_of_robots_and_nearer_packages_are_noticed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (own, above) = (folder.path().join("a/b"), folder.path().join("a"));
+    std::fs::create_dir_all(&own).unwrap();
+    let path = own.join("robot.urdf");
+    let description = "<package><name>p</name></package>";
+    std::fs::write(above.join("package.xml"), description).unwrap();
+    let mesh = "<mesh filename='package://p/strip.ply'/>";
+    let link = format!("<link name='a'><visual><geometry>{mesh}</geometry></visual></link>");
+    std::fs::write(&path, format!("<robot>{link}</robot>")).unwrap();
+    write(&above.join("strip.ply"), 40_000, 100);
+    set_age(&path, 100);
+    set_age(&above.join("package.xml"), 100);
+    let cache = Cache::in_folder(folder.path().join("cache"));
+    let vertices = || {
+        let (scene, origin) = cache.load(&path).unwrap();
+        (scene.meshes[0].positions.len(), matches!(origin, Origin::Cache(_)))
+    };
+    assert_eq!([vertices(), vertices()], [(40_000, false), (40_000, true)]);
+    write(&above.join("strip.ply"), 40_001, 100);
+    assert_eq!([vertices(), vertices()], [(40_001, false), (40_001, true)], "its mesh was changed");
+    // A package.xml that was not there before is nearer, and then says something else.
+    write(&own.join("strip.ply"), 40_002, 100);
+    assert_eq!(vertices(), (40_001, true));
+    std::fs::write(own.join("package.xml"), description).unwrap();
+    set_age(&own.join("package.xml"), 100);
+    assert_eq!([vertices(), vertices()], [(40_002, false), (40_002, true)], "there is a nearer package");
+    std::fs::write(own.join("package.xml"), description.replace('p', "q")).unwrap();
+    set_age(&own.join("package.xml"), 90);
+    assert_eq!([vertices(), vertices()], [(40_001, false), (40_001, true)], "it is another package");
+    std::fs::remove_file(above.join("strip.ply")).unwrap();
+    assert!(cache.load(&path).is_err());
+}
+
+#[test]
 fn what_is_wrong_behind_a_right_checksum_is_refused_too() {
     let path = Path::new("/a/b.ply");
     let mut scene = Scene::new("");

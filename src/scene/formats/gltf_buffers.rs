@@ -127,8 +127,8 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// Undoes the percent escapes of a relative address.
-fn unescape(uri: &str) -> String {
+/// Undoes the percent escapes of an address.
+pub(super) fn unescape(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();
     while let [first, tail @ ..] = rest {

@@ -15,6 +15,9 @@ mod ply_body;
 mod ply_header;
 mod stl;
 mod stl_text;
+mod urdf;
+mod urdf_shapes;
+mod urdf_xml;
 
 /// A file format that scenes are read from.
 pub struct Format {
@@ -33,6 +36,11 @@ pub const FORMATS: &[Format] = &[
     Format { extension: "obj", about: "Wavefront OBJ, geometry only", load: obj::load },
     Format { extension: "ply", about: "Stanford PLY, text or binary, geometry only", load: ply::load },
     Format { extension: "stl", about: "stereolithography, text or binary, welded", load: stl::load },
+    Format {
+        extension: "urdf",
+        about: "robots: links as their joints place them, with meshes",
+        load: urdf::load,
+    },
 ];
 
 /// Reads a scene from a file, in the format its extension says, and validates it. The scene is named

@@ -4,7 +4,14 @@ use super::{Scene, SceneError, names};
 
 mod dragons;
 mod factory;
+mod geodesic;
+mod place;
+mod robot;
 mod shapes;
+mod shell;
+
+pub(super) use geodesic::geodesic;
+pub(super) use shapes::{cuboid, cylinder};
 
 /// A scene made by a program.
 pub struct Generator {
@@ -28,7 +35,8 @@ impl Generator {
     }
 }
 
-/// Where a person can walk in a generated scene: straight aisles along x and along z that all cross.
+/// Where a person can walk in a generated scene: straight aisles along x and along z that all cross. What is
+/// no hall but one thing to look at from outside has none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aisles {
     /// Where the aisles along z lie: their x, in metres, least first.
@@ -37,6 +45,16 @@ pub struct Aisles {
     pub z: Vec<f32>,
     /// Far plane that takes in the whole hall from anywhere in it, in metres.
     pub far: f32,
+}
+
+impl Aisles {
+    /// Nowhere to walk.
+    const NONE: Self = Self { x: Vec::new(), z: Vec::new(), far: 0.0 };
+
+    /// Whether there is nowhere to walk.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty() || self.z.is_empty()
+    }
 }
 
 /// All generators.
@@ -53,6 +71,10 @@ pub const GENERATORS: &[Generator] = &[
     dragons::POMPEII,
     dragons::SPOKED,
     dragons::OUTLIER,
+    robot::ROBOT,
+    shell::OUTER,
+    shell::FIVE_PERCENT,
+    shell::ONE_PERCENT,
 ];
 
 /// Makes a scene by its name.

@@ -11,7 +11,7 @@ pub(super) const CUBOID_TRIANGLES: u32 = 12;
 pub(super) const LEAST_CYLINDER: u32 = 8;
 
 /// A box standing on the origin: centred in x and z, from 0 up in y; sizes in metres.
-pub(super) fn cuboid(name: &str, size: Vec3) -> Mesh {
+pub(in crate::scene) fn cuboid(name: &str, size: Vec3) -> Mesh {
     let corner = |i: u32| {
         let pick = |bit: u32| if i >> bit & 1 == 0 { -0.5 } else { 0.5 };
         Vec3::new(pick(0), pick(1) + 0.5, pick(2)) * size
@@ -28,7 +28,7 @@ pub(super) fn cuboid(name: &str, size: Vec3) -> Mesh {
 ///
 /// # Panics
 /// If `count` is odd or below [`LEAST_CYLINDER`].
-pub(super) fn cylinder(name: &str, radius: f32, height: f32, count: u32) -> Mesh {
+pub(in crate::scene) fn cylinder(name: &str, radius: f32, height: f32, count: u32) -> Mesh {
     assert!(count >= LEAST_CYLINDER && count.is_multiple_of(2), "{count} triangles cannot make a cylinder");
     // As many rings as keep the triangles around the side from getting skinny.
     let rings = (1..).find(|h| (count + 4) / (2 * (h + 1)) <= 12 * h).unwrap_or(1);

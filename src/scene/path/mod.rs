@@ -61,11 +61,12 @@ const ASPECT: f32 = 4.0 / 3.0;
 const LENS: Lens = Lens::Symmetric { fov_y: std::f32::consts::FRAC_PI_3, aspect: ASPECT };
 
 impl CameraPath {
-    /// A path for a scene: a user's walk along the aisles if a generator made it, a flight through its
-    /// bounds otherwise. Equal seeds give equal paths.
+    /// A path for a scene: a user's walk along the aisles if a generator made it with some, a flight through
+    /// its bounds otherwise. Equal seeds give equal paths.
     pub fn for_scene(scene: &Scene, frames: usize, seed: u64) -> Self {
-        let made = GENERATORS.iter().any(|generator| generator.name == scene.name);
-        let kind = if made { walk::WALK } else { fly::FLY };
+        let generator = GENERATORS.iter().find(|generator| generator.name == scene.name);
+        let has_aisles = generator.is_some_and(|generator| !generator.aisles().is_empty());
+        let kind = if has_aisles { walk::WALK } else { fly::FLY };
         kind.make(scene, frames, seed)
     }
 }

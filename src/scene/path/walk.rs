@@ -57,7 +57,7 @@ impl CameraPath {
     /// around. 60 degrees up and down, 4:3, from 0.1 m to [`Aisles::far`]. No frames for a hall without
     /// aisles.
     pub fn walk(aisles: &Aisles, frames: usize, seed: u64) -> Self {
-        if aisles.x.is_empty() || aisles.z.is_empty() {
+        if aisles.is_empty() {
             return Self::default();
         }
         let mut walker = Walker::new(aisles, seed);
@@ -150,7 +150,9 @@ mod tests {
 
     #[test]
     fn walks_are_smooth_inside_and_the_same_each_time() {
-        for generator in GENERATORS {
+        let halls = GENERATORS.iter().filter(|generator| !generator.aisles().is_empty());
+        assert!(halls.clone().count() >= 12);
+        for generator in halls {
             let aisles = generator.aisles();
             let path = CameraPath::walk(&aisles, 2000, 3);
             assert_eq!(path.frames.len(), 2000);

@@ -11,8 +11,8 @@ use glam::{Mat3A, Vec3, Vec3A, Vec4};
 /// Up to how many points all are looked at instead of the extreme ones.
 const FEW: usize = 24;
 
-/// Turns that are tried about the thinnest side: a sixteenth of a right angle each.
-const TURNS: u32 = 15;
+/// Turns that are tried about the thinnest side: an eighth of a right angle each.
+const TURNS: u32 = 7;
 
 /// Axes to try for a box around some points, the best first; the world's come last.
 pub(super) fn axes(points: &[Vec3], principal: [Vec3; 3]) -> [[Vec3; 3]; 2] {
@@ -23,7 +23,9 @@ pub(super) fn axes(points: &[Vec3], principal: [Vec3; 3]) -> [[Vec3; 3]; 2] {
     let mut best = Best { points: &lanes[..measured.len()], axes: Vec3::AXES, surface: 0.0 };
     best.surface = best.surface_of(Vec3::AXES);
     best.offer(principal);
-    best.of_tetrahedra(&extreme);
+    if points.len() > FEW {
+        best.of_tetrahedra(&extreme);
+    }
     best.turn();
     [best.axes, Vec3::AXES]
 }

@@ -2,9 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use glam::{Affine3A, Mat3, Vec3};
+use glam::{Affine3A, Vec3};
 
 use super::super::super::{Scene, SplitMix64};
+use super::super::place::{turned_x, turned_y};
 use super::parts::{Parts, Shape};
 use super::{CELL_LENGTH, LINE_START, Plan, RACK_PITCH};
 
@@ -30,22 +31,6 @@ pub(super) fn lay_out(plan: &Plan) -> Scene {
     site.store(root);
     site.parts.finish(&mut site.scene, plan.triangles);
     site.scene
-}
-
-/// A place, turned about y by an angle in radians.
-fn turned_y(place: Vec3, angle: f64) -> Affine3A {
-    let (sin, cos) = angle.sin_cos();
-    let (sin, cos) = (sin as f32, cos as f32);
-    let turn = Mat3::from_cols(Vec3::new(cos, 0.0, -sin), Vec3::Y, Vec3::new(sin, 0.0, cos));
-    Affine3A::from_mat3_translation(turn, place)
-}
-
-/// A place, turned about x by an angle in radians.
-fn turned_x(place: Vec3, angle: f64) -> Affine3A {
-    let (sin, cos) = angle.sin_cos();
-    let (sin, cos) = (sin as f32, cos as f32);
-    let turn = Mat3::from_cols(Vec3::X, Vec3::new(0.0, cos, sin), Vec3::new(0.0, -sin, cos));
-    Affine3A::from_mat3_translation(turn, place)
 }
 
 impl Site<'_> {

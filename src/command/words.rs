@@ -208,9 +208,10 @@ pub(crate) struct RunWords {
     /// Schemes in place of the experiment's; the serial one stays, as speedups are held against it.
     #[arg(long, value_delimiter = ',')]
     scheme: Vec<String>,
-    /// A scene in place of the experiment's: a file or the name of a generated one.
+    /// A scene in place of the experiment's: a file or the name of a generated one. May be given several times; an
+    /// experiment with two bodies takes them two by two, the one that moves first.
     #[arg(long, value_name = "FILE|NAME")]
-    scene: Option<String>,
+    scene: Vec<String>,
     /// A recorded camera path.
     #[arg(long, value_name = "FILE")]
     path: Option<PathBuf>,
@@ -257,7 +258,7 @@ impl RunWords {
             machines: self.machine.clone(),
             processors: self.processors.clone(),
             schemes: self.scheme.clone(),
-            scene: self.scene.clone(),
+            scenes: self.scene.clone(),
             path: self.path.clone(),
             frames: self.frames,
             seed: self.seed,

@@ -189,6 +189,31 @@ pub const METRICS: &[Metric] = {
             Lower,
             "The median frame's time over that of reading the boxes' memory.",
         ),
+        declare("box_tests", "tests", Lower, "Overlap tests of boxes a frame.")
+            .gives_up(AccuracyKind::Structure),
+        declare("triangle_tests", "tests", Lower, "Pairs of triangles a frame that were tested exactly.")
+            .gives_up(AccuracyKind::Structure),
+        declare(
+            "false_overlaps",
+            "pairs",
+            Lower,
+            "Pairs of leaves a frame that overlapped though none of their triangles touch.",
+        )
+        .surplus(),
+        declare("contacts", "pairs", Higher, "Pairs of triangles, or of scene nodes, a frame that touch."),
+        declare("time_per_test", "ns", Lower, "Total time over all overlap tests of boxes."),
+        declare(
+            "tree_rate",
+            "Mtriangles/s",
+            Higher,
+            "Millions of triangles of both bodies built into volume trees a second, on one thread.",
+        ),
+        declare(
+            "tightness",
+            "x",
+            Lower,
+            "Surface of all volumes of both bodies over that of the aligned boxes in their place.",
+        ),
         declare(
             "lost_time",
             "%",

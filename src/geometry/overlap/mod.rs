@@ -10,16 +10,18 @@
 //! One and eight are the same code, so they say the same of the same pair, on every vector unit.
 
 mod aabb;
+mod aligned;
 mod kdop;
 mod obb;
 mod sphere;
 
+use super::Rigid;
 use super::lanes::{Lanes, Unit};
-use super::{Rigid, Volume};
+pub use aligned::AlignedObb;
 use glam::{Mat3A, Vec3, Vec3A};
 
 /// Volumes that are tested against one another.
-pub trait Overlap: Volume {
+pub trait Overlap: Copy + std::fmt::Debug + Send + Sync + 'static {
     /// A volume as eight of its kind see it: moved to where they are.
     type Moved: Copy + Send + Sync + 'static;
 

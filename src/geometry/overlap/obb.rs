@@ -17,7 +17,7 @@ pub struct MovedObb {
 }
 
 /// The numbers of a box: its centre, its three axes, its half extents.
-const NUMBERS: usize = 15;
+pub(super) const NUMBERS: usize = 15;
 
 impl Obb {
     fn numbers(&self) -> [f32; NUMBERS] {
@@ -61,7 +61,7 @@ impl Eight<Obb> for Columns<NUMBERS> {
     const UNUSED: Self = Self::UNUSED;
 
     fn set(&mut self, lane: usize, volume: &Obb) {
-        self.set(lane, volume.numbers());
+        Columns::set(self, lane, volume.numbers());
     }
 
     #[inline]

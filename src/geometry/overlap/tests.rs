@@ -2,7 +2,7 @@
 //! against separating axes in f64.
 
 use super::*;
-use crate::geometry::{Aabb, KDop, Obb, Sphere};
+use crate::geometry::{Aabb, KDop, Obb, Sphere, Volume};
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 
@@ -83,6 +83,7 @@ proptest! {
         let motion = Rigid::new(turn, DVec3::ZERO);
         together::<Aabb>(&a, &b, &motion)?;
         together::<Obb>(&a, &b, &motion)?;
+        together::<AlignedObb>(&a, &b, &motion)?;
         together::<Sphere>(&a, &b, &motion)?;
         together::<KDop<7>>(&a, &b, &motion)?;
         together::<KDop<9>>(&a, &b, &motion)?;

@@ -7,6 +7,9 @@ use glam::{DMat3, DVec3, Vec3};
 use super::{Placed, Volume};
 use crate::geometry::{Aabb, culling::ROUNDING};
 
+/// Of how many points at most the covariance is worth its time.
+const SAMPLE: usize = 512;
+
 /// A box with axes of its own, in metres; empty if an extent is negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obb {
@@ -65,7 +68,9 @@ impl Obb {
     /// least surface, turned about the thinnest side as far as that helps. Its axes are at right angles but for
     /// rounding. Empty if there are none.
     pub fn tight(points: &[Vec3]) -> Self {
-        extremes::axes(points, principal_axes(points))
+        // Many points are sampled: their covariance is but one offer.
+        let sample: Vec<Vec3> = points.iter().step_by(points.len() / SAMPLE + 1).copied().collect();
+        extremes::axes(points, principal_axes(&sample))
             .into_iter()
             .find_map(|axes| Self::with_axes(axes, points))
             .unwrap_or(Self::EMPTY)

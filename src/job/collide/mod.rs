@@ -28,7 +28,7 @@ use crate::geometry::{Overlap, Rigid, Unit};
 use crate::machine::{Machine, Threads, Word};
 use crate::scheme::tree::TreeWork;
 use crate::structure::VolumeTree;
-pub use costs::Costs;
+pub use costs::{Costs, Times};
 pub use pair::{Pair, TreeView};
 pub use shared::SharedTree;
 use std::sync::atomic::Ordering;
@@ -52,6 +52,8 @@ pub struct Contacts {
     pub box_tests: u64,
     /// Pairs of triangles tested.
     pub triangle_tests: u64,
+    /// Pairs of leaves that overlapped though none of their triangles touch.
+    pub false_overlaps: u64,
 }
 
 impl Contacts {
@@ -62,6 +64,7 @@ impl Contacts {
             all.pairs.extend(&part.pairs);
             all.box_tests += part.box_tests;
             all.triangle_tests += part.triangle_tests;
+            all.false_overlaps += part.false_overlaps;
         }
         all.pairs.sort_unstable();
         all

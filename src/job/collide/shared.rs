@@ -6,10 +6,11 @@ use crate::machine::{Layout, Machine, Shared};
 use crate::structure::VolumeTree;
 use crate::structure::volume_tree::Link;
 use glam::Vec3;
+use std::rc::Rc;
 
 /// A copy of what a query reads of a tree, in the shared memory of a machine.
 pub struct SharedTree<V: Overlap> {
-    tree: VolumeTree<V>,
+    tree: Rc<VolumeTree<V>>,
     volumes: Shared<V>,
     links: Shared<Link>,
     blocks: Shared<V::Eight>,
@@ -18,7 +19,7 @@ pub struct SharedTree<V: Overlap> {
 
 impl<V: Overlap> SharedTree<V> {
     /// Copies a tree into a machine's memory.
-    pub fn new<M: Machine>(machine: &M, tree: VolumeTree<V>) -> Self {
+    pub fn new<M: Machine>(machine: &M, tree: Rc<VolumeTree<V>>) -> Self {
         fn copy<M: Machine, T: Copy + Send + Sync>(machine: &M, all: &[T]) -> Shared<T> {
             machine.alloc(all.len(), Layout::Packed, |i| all[i])
         }

@@ -86,7 +86,7 @@ fn every_scheme_finds_the_same() {
     let expected = brute(&a, &b, &motion, 0.0);
     assert!(expected.len() > 50);
     fn on<M: Machine>(machine: &M, trees: [VolumeTree<Obb>; 2], motion: &Rigid, expected: &[(u32, u32)]) {
-        let [a, b] = trees.map(|tree| SharedTree::new(machine, tree));
+        let [a, b] = trees.map(|tree| SharedTree::new(machine, tree.into()));
         let pair = a.against(&b, motion, 0.0, Unit::best());
         for scheme in crate::scheme::tree::SCHEMES.iter().filter(|s| machine.is_native() || !s.native_only) {
             for first in [false, true] {

@@ -17,6 +17,8 @@ pub struct Found {
     pub box_tests: u64,
     /// Pairs of triangles tested.
     pub triangle_tests: u64,
+    /// Pairs of leaves that overlapped though none of their triangles touch.
+    pub false_overlaps: u64,
 }
 
 /// What both ways of working have.
@@ -69,6 +71,7 @@ impl<W: Word, V: Overlap> Common<'_, W, V> {
             return self.found_one();
         }
         items(a).for_each(|i| cpu.touch(&pair.a.triangles[i as usize]));
+        let before = found.pairs.len();
         for j in items(b) {
             cpu.touch(&pair.b.triangles[j as usize]);
             let moved = pair.moved_triangle(j);
@@ -87,6 +90,7 @@ impl<W: Word, V: Overlap> Common<'_, W, V> {
                 }
             }
         }
+        found.false_overlaps += u64::from(found.pairs.len() == before && !same);
     }
 
     /// Lets the others know, where one contact is enough (P2-F18): see [`is_over`].
@@ -118,15 +122,8 @@ impl<'a, W: Word, V: Overlap> BatchWork<'a, W, V> {
         self
     }
 
-    /// A box of one body against the boxes below one of its own.
-    fn own<P: Processor>(
-        &self,
-        at: u32,
-        link: Link,
-        found: &mut Found,
-        cpu: &P,
-        emit: &mut impl FnMut((u32, u32)),
-    ) {
+    /// The boxes below one against each other, in one body.
+    fn own<P: Processor>(&self, link: Link, found: &mut Found, cpu: &P, emit: &mut impl FnMut((u32, u32))) {
         let Common { pair, costs, .. } = &self.0;
         for child in link.first..link.first + link.count() {
             emit((child, child));
@@ -146,7 +143,6 @@ impl<'a, W: Word, V: Overlap> BatchWork<'a, W, V> {
                 lanes(block, near).for_each(|other| emit((child, other)));
             }
         }
-        let _ = at;
     }
 }
 
@@ -189,7 +185,7 @@ impl<W: Word, V: Overlap> TreeWork for BatchWork<'_, W, V> {
         let same = pair.own && task.0 == task.1;
         let (below, moved, blocks, first) = match Common::<W, V>::down(&a, &b) {
             Down::Leaves => return self.0.leaves(a, b, same, found, cpu),
-            _ if same => return self.own(task.0, a, found, cpu, &mut emit),
+            _ if same => return self.own(a, found, cpu, &mut emit),
             Down::First => {
                 cpu.touch(&pair.b.volumes[task.1 as usize]);
                 (a, pair.at_a(task.1), pair.a.blocks, true)

@@ -1,5 +1,6 @@
 //! What is measured: the way from a cell to the job, scheme and machine it names.
 
+mod collide;
 mod cull;
 mod cull_boxes;
 mod draw;
@@ -84,8 +85,13 @@ pub struct Known {
 
 /// The jobs, by word: how each is made ready. The list is the table of contents.
 type OpenJob = fn(&Cell, &Options, &mut SubjectCache) -> Result<Box<dyn Subject>, MeasureError>;
-const JOBS: &[(&str, OpenJob)] =
-    &[("cull", cull::open), ("cull_boxes", cull_boxes::open), ("draw", draw::open), ("tree", tree::open)];
+const JOBS: &[(&str, OpenJob)] = &[
+    ("collide", collide::open),
+    ("cull", cull::open),
+    ("cull_boxes", cull_boxes::open),
+    ("draw", draw::open),
+    ("tree", tree::open),
+];
 /// The jobs made of independent pieces; the others descend a hierarchy.
 const IN_PIECES: &[&str] = &["cull_boxes"];
 
@@ -125,6 +131,7 @@ impl Known {
 pub struct SubjectCache {
     scenes: HashMap<String, Rc<Stage>>,
     boxes: HashMap<String, Rc<cull_boxes::BoxStage>>,
+    pairs: HashMap<String, Rc<collide::PairStage>>,
     teams: HashMap<u32, Rc<Threads>>,
     models: HashMap<String, Model>,
     drawings: draw::Drawings,

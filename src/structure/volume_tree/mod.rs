@@ -18,6 +18,7 @@ use crate::geometry::overlap::{Eight, Way};
 use crate::geometry::{Aabb, Overlap, Rigid};
 use crate::structure::TreeError;
 use glam::{DVec3, Vec3};
+use std::ops::Range;
 
 /// Boxes in a block.
 pub const BLOCK: usize = 8;
@@ -191,28 +192,28 @@ impl<V: Overlap> VolumeTree<V> {
         Way::new(&here.then(&Rigid::shift(-other.origin)), reach)
     }
 
-    /// The points around which a box was fitted, relative to the origin.
-    fn points_of(&self, (first, end): (u32, u32), into: &mut Vec<Vec3>) {
-        into.clear();
+    /// All points, relative to the origin, in the order of the items.
+    fn local_points(&self) -> Vec<Vec3> {
         let local = |point: &Vec3| (point.as_dvec3() - self.origin).as_vec3();
         match &self.content {
-            Items::Triangles { places, .. } => {
-                into.extend(places[first as usize..end as usize].iter().flatten().map(local));
-            }
-            Items::Nodes { points, starts } => {
-                let (from, to) = (starts[first as usize], starts[end as usize]);
-                into.extend(points[from as usize..to as usize].iter().map(local));
-            }
+            Items::Triangles { places, .. } => places.as_flattened().iter().map(local).collect(),
+            Items::Nodes { points, .. } => points.iter().map(local).collect(),
         }
+    }
+
+    /// Which of the points are those of some items.
+    fn points_of(&self, (first, end): (u32, u32)) -> Range<usize> {
+        let at = |item: u32| match &self.content {
+            Items::Triangles { .. } => 3 * item as usize,
+            Items::Nodes { starts, .. } => starts[item as usize] as usize,
+        };
+        at(first)..at(end)
     }
 
     /// Puts a volume around the items of every box.
     fn fit(&mut self) {
-        let mut points = Vec::new();
-        let mut around = |range| {
-            self.points_of(range, &mut points);
-            V::around(&points)
-        };
+        let points = self.local_points();
+        let around = |range| V::around(&points[self.points_of(range)]);
         let Some(&all) = self.items.first() else { return };
         let root = around(all);
         let boxes = self.items.iter().zip(&self.links);
@@ -232,7 +233,7 @@ impl<V: Overlap> VolumeTree<V> {
         let used = || (0..self.links.len()).filter(|&i| self.links[i].is_used());
         let mut depths = vec![0; self.links.len()];
         let (mut depth, mut own, mut aligned) = (0, 0.0, 0.0);
-        let mut points = Vec::new();
+        let points = self.local_points();
         for i in used() {
             depths[i] = depths[i].max(1);
             depth = depth.max(depths[i]);
@@ -241,7 +242,7 @@ impl<V: Overlap> VolumeTree<V> {
                 (link.first..link.first + link.count())
                     .for_each(|below| depths[below as usize] = depths[i] + 1);
             }
-            self.points_of(self.items[i], &mut points);
+            let points = &points[self.points_of(self.items[i])];
             own += f64::from(link.surface);
             aligned += f64::from(Overlap::surface(&Aabb::of_points(points.iter().copied())));
         }
@@ -266,7 +267,7 @@ impl<V: Overlap> VolumeTree<V> {
     pub fn validate(&self) -> Result<(), TreeError> {
         let mut seen = vec![0_u32; self.order.len()];
         let mut stack: Vec<usize> = if self.is_empty() { Vec::new() } else { vec![0] };
-        let mut points = Vec::new();
+        let all = self.local_points();
         let here = Way::new(&Rigid::IDENTITY, 0.0);
         while let Some(i) = stack.pop() {
             let (link, (first, end)) = (self.links[i], self.items[i]);
@@ -295,7 +296,7 @@ impl<V: Overlap> VolumeTree<V> {
                     return Err(TreeError::new(i, format!("items up to {end}, the boxes below end at {at}")));
                 }
             }
-            self.points_of((first, end), &mut points);
+            let points = &all[self.points_of((first, end))];
             let around = self.volumes[i].moved(&here);
             if points.iter().any(|point| V::around(&[*point]).apart(&around)) {
                 return Err(TreeError::new(i, "a point of its own lies outside"));

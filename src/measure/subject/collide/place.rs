@@ -1,0 +1,112 @@
+//! Where the moving body is in each frame: `job.place`.
+//!
+//! - `here`: where its scene has it.
+//! - `gap`: beside the other along x, nearer by nothing than `job.gap` times the other's longest side.
+//! - `deep`: within the other without touching, where the descent is longest among places tried at random
+//!   (P2-21: "spatially placed such that the algorithm is forced to traverse deep down in both trees").
+//! - `graze`: it slides along the other past a touch, a thousandth of its side away, and then into it.
+
+use super::Over;
+use super::stage::Body;
+use crate::geometry::{Aabb, Obb, Rigid};
+use crate::job::collide::{Query, contacts};
+use crate::measure::MeasureError;
+use crate::scene::SplitMix64;
+use crate::structure::VolumeTree;
+use glam::{DQuat, DVec3};
+
+/// A kind of place, or of way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Place {
+    Here,
+    Gap(f64),
+    Deep,
+    Graze,
+}
+
+/// Places tried for `deep`.
+const TRIES: usize = 4000;
+/// Halvings of the way on which a gap is looked for: to a millionth of a millionth of it.
+const HALVINGS: usize = 40;
+/// How near `graze` comes, in shares of the other's longest side, and how deep it gets in the end.
+const GRAZE: f64 = 1e-3;
+const INTO: f64 = 0.2;
+/// How far `graze` turns on its way, radians.
+const TURN: f64 = 0.5;
+/// Leaves of the trees that gaps are found with.
+const LEAF: usize = 4;
+
+pub(super) fn poses(
+    mover: &Body,
+    other: &Body,
+    over: Over,
+    place: Place,
+    frames: usize,
+    seed: u64,
+) -> Result<Vec<Rigid>, MeasureError> {
+    Ok(match place {
+        Place::Here => vec![Rigid::IDENTITY; frames],
+        Place::Gap(gap) => vec![beside(mover, other, DQuat::IDENTITY, gap)?; frames],
+        Place::Deep => vec![deep(mover, other, over, seed)?; frames],
+        Place::Graze => {
+            let side = longest(other);
+            let turn = |share: f64| DQuat::from_rotation_y(TURN * share);
+            let touch = beside(mover, other, turn(0.5), GRAZE)?.translation();
+            let pose = |frame: usize| {
+                let share = frame as f64 / (frames - 1).max(1) as f64;
+                // Along it up to the middle of the way, then into it.
+                let (along, into) = ((1.0 - 2.0 * share).max(0.0), (2.0 * share - 1.0).max(0.0));
+                let way = DVec3::new(-INTO * side * into, 0.0, -side * along);
+                Rigid::new(turn(share.min(0.5)), touch + way)
+            };
+            (0..frames).map(pose).collect()
+        }
+    })
+}
+
+fn longest(body: &Body) -> f64 {
+    f64::from(body.scene.bounds().size().max_element())
+}
+
+/// Beside the other body along x, so far that nothing is nearer than `gap` times its longest side.
+fn beside(mover: &Body, other: &Body, turn: DQuat, gap: f64) -> Result<Rigid, MeasureError> {
+    let (moved, fixed) =
+        (mover.tree::<Obb>(Over::Triangles, LEAF)?, other.tree::<Obb>(Over::Triangles, LEAF)?);
+    let (own, side) = (mover.scene.bounds(), longest(other));
+    // Turned about its own middle, and that brought to the other's.
+    let middle = own.centre().as_dvec3();
+    let to = other.scene.bounds().centre().as_dvec3();
+    let at = |x: f64| Rigid::shift(-middle).then(&Rigid::new(turn, to + DVec3::X * x));
+    let query = Query { first: true, reach: gap * side };
+    let (mut near, mut far) = (0.0, side + f64::from(own.size().length()) + gap * side);
+    for _ in 0..HALVINGS {
+        let x = (near + far) / 2.0;
+        let touches = !contacts(&fixed, &moved, &at(x), query).pairs.is_empty();
+        *(if touches { &mut near } else { &mut far }) = x;
+    }
+    Ok(at(far))
+}
+
+/// Within the other body, touching nothing, where the most boxes have to be tested to know it.
+fn deep(mover: &Body, other: &Body, over: Over, seed: u64) -> Result<Rigid, MeasureError> {
+    let (moved, fixed): (VolumeTree<Aabb>, VolumeTree<Aabb>) =
+        (mover.tree(over, LEAF)?, other.tree(over, LEAF)?);
+    let (own, around) = (mover.scene.bounds(), other.scene.bounds());
+    let (low, high) = ((around.min - own.min).as_dvec3(), (around.max - own.max).as_dvec3());
+    let mut random = SplitMix64::new(seed);
+    let mut best = None;
+    for _ in 0..TRIES {
+        let mut share = || random.between(0.0, 1.0);
+        let way = low + (high - low) * DVec3::new(share(), share(), share());
+        let motion = Rigid::shift(way);
+        let found = contacts(&fixed, &moved, &motion, Query { first: true, reach: 0.0 });
+        if found.pairs.is_empty() && best.is_none_or(|(tests, _)| found.box_tests > tests) {
+            best = Some((found.box_tests, motion));
+        }
+    }
+    let (mover, other) = (&mover.scene.name, &other.scene.name);
+    best.map(|(_, motion)| motion).ok_or_else(|| {
+        let message = format!("no place for `{mover}` in `{other}` where nothing touches, in {TRIES} tries");
+        MeasureError::Failed(message)
+    })
+}

@@ -20,4 +20,4 @@ pub use box_test::{BoxTest, Kernel};
 pub use camera::{Camera, CameraError, Lens};
 pub use frustum::Frustum;
 pub use plane::{PLANE_COUNT, Plane};
-pub use volume::{KDop, Obb, Sphere, Volume};
+pub use volume::{KDop, Movable, Obb, Sphere, Volume};

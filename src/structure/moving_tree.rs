@@ -68,8 +68,7 @@ impl Node {
         let norm = |m: &DAffine3| m.matrix3.to_cols_array().map(|x| x * x).iter().sum::<f64>().sqrt();
         // Written so that a NaN has no way back.
         let returns = back.is_finite() && norm(&there) * norm(&back) < STEEPEST;
-        let (back, at_rest) =
-            if returns { (back, turned) } else { (DAffine3::IDENTITY, Affine3A::IDENTITY) };
+        let (back, at_rest) = if returns { (back, turned) } else { (DAffine3::IDENTITY, Affine3A::IDENTITY) };
         (Node { parent, local, world, back }, at_rest)
     }
 

@@ -70,8 +70,10 @@ fn sticks_out(volumes: &Volumes, node: usize, point: Vec3) -> f32 {
             let at = inverse * (point - all[node].centre()).as_dvec3();
             // Axes of what was stretched may lie nearly in a plane: coordinates are then longer than the way out.
             let longest = inverse.transpose();
-            let longest =
-                [longest.x_axis, longest.y_axis, longest.z_axis].map(DVec3::length).into_iter().fold(1.0, f64::max);
+            let longest = [longest.x_axis, longest.y_axis, longest.z_axis]
+                .map(DVec3::length)
+                .into_iter()
+                .fold(1.0, f64::max);
             ((at.abs() - all[node].half().as_dvec3()).max_element() / longest) as f32
         }
         Volumes::Sphere(all) => point.distance(all[node].centre) - all[node].radius,

@@ -42,7 +42,9 @@ pub const VOLUME_KINDS: &[VolumeKind] = &[
     VolumeKind {
         name: "aabb_as_obb",
         about: "axis-aligned boxes tested as oriented ones, as Paper I did (section 4)",
-        fit: |points| Volumes::Obb(points.each(|_, points| Obb::from(Aabb::of_points(points.iter().copied())))),
+        fit: |points| {
+            Volumes::Obb(points.each(|_, points| Obb::from(Aabb::of_points(points.iter().copied()))))
+        },
     },
     VolumeKind {
         name: "obb",
@@ -106,11 +108,7 @@ impl Points {
     }
 
     /// Those of the mesh at each node itself, placed by `place`; no source, no place.
-    pub(super) fn own(
-        scene: &Scene,
-        tree: &SkipTree,
-        place: impl Fn(&SkipNode) -> Option<Affine3A>,
-    ) -> Self {
+    pub(super) fn own(scene: &Scene, tree: &SkipTree, place: impl Fn(&SkipNode) -> Option<Affine3A>) -> Self {
         let mut all = Points { points: Vec::new(), ranges: Vec::new(), axes: Vec::new() };
         for node in &tree.nodes {
             let (start, placed) = (all.points.len(), place(node));
@@ -128,7 +126,8 @@ impl Points {
 
     /// Fits a volume for each node, given its own axes.
     pub(super) fn each<V>(&self, fit: impl Fn(Option<[Vec3; 3]>, &[Vec3]) -> V) -> Vec<V> {
-        let one = |(range, axes): (&Range<usize>, &Option<[Vec3; 3]>)| fit(*axes, &self.points[range.clone()]);
+        let one =
+            |(range, axes): (&Range<usize>, &Option<[Vec3; 3]>)| fit(*axes, &self.points[range.clone()]);
         self.ranges.iter().zip(&self.axes).map(one).collect()
     }
 }

@@ -123,7 +123,8 @@ impl<M: Machine> CullTree<M> {
     /// nodes only. To be called after each refit, between frames; on a simulated machine it is not billed.
     ///
     /// # Panics
-    /// If this tree was not made of the moving one's tree and volumes.
+    /// If this tree was not made of the moving one's tree, or of volumes of another kind. A tree of boxes takes the
+    /// boxes, whatever volumes there are beside them.
     pub fn refit(&mut self, moving: &MovingTree) {
         let (changed, nodes) = (moving.changed(), &moving.tree().nodes);
         assert_eq!(nodes.len(), self.records.len(), "expected the tree that this one was made of");

@@ -26,10 +26,10 @@ macro_rules! volumes {
                 }
             }
 
-            /// Copies those of some nodes again.
+            /// Copies those of some nodes again. Nodes tested by their own boxes have none.
             pub(super) fn renew(&mut self, volumes: &Volumes, nodes: &[u32]) {
                 match (self, volumes) {
-                    (Self::Aabb, Volumes::Aabb) => {}
+                    (Self::Aabb, _) => {}
                     $((Self::$kind(kept), Volumes::$kind(volumes)) => {
                         nodes.iter().for_each(|&node| kept[node as usize] = volumes[node as usize]);
                     })*

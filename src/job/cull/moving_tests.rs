@@ -139,7 +139,8 @@ fn what_moves_into_view_is_found_in_that_very_frame() {
         let turn = glam::Quat::from_rotation_y(angle);
         Camera { right: turn * camera.right, forward: turn * camera.forward, ..*camera }
     };
-    let ways: [(&str, &dyn Fn(&Camera, usize) -> Camera); 3] = [
+    type Way<'a> = (&'a str, &'a dyn Fn(&Camera, usize) -> Camera);
+    let ways: [Way<'_>; 3] = [
         ("standing", &|camera, _| *camera),
         ("shifting", &|camera, i| Camera { eye: camera.eye + Vec3::X * (0.01 * i as f32), ..*camera }),
         ("turning", &|camera, i| turned(camera, 0.01 * i as f32)),

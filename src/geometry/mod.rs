@@ -27,4 +27,4 @@ pub use lanes::Unit;
 pub use overlap::Overlap;
 pub use plane::{PLANE_COUNT, Plane};
 pub use rigid::Rigid;
-pub use volume::{KDop, Obb, Sphere, Volume};
+pub use volume::{KDop, Movable, Obb, Sphere, Volume};

@@ -2,7 +2,7 @@
 
 use std::alloc::{Layout as Bytes, alloc, dealloc, handle_alloc_error};
 use std::marker::PhantomData;
-use std::ops::Index;
+use std::ops::{Index, IndexMut};
 use std::ptr::NonNull;
 use std::sync::Arc;
 
@@ -70,7 +70,7 @@ pub struct Shared<T> {
 
 // SAFETY: a `Shared` owns its values, as a `Vec` does; the arena is Send and Sync itself.
 unsafe impl<T: Send> Send for Shared<T> {}
-// SAFETY: `&Shared` gives out `&T` only.
+// SAFETY: `&Shared` gives out `&T` only, `&mut Shared` one `&mut T`.
 unsafe impl<T: Sync> Sync for Shared<T> {}
 
 impl<T> Shared<T> {
@@ -136,6 +136,16 @@ impl<T> Index<usize> for Shared<T> {
     }
 }
 
+impl<T> IndexMut<usize> for Shared<T> {
+    #[inline]
+    fn index_mut(&mut self, i: usize) -> &mut T {
+        assert!(i < self.len, "index {i} of a shared allocation of {}", self.len);
+        // SAFETY: `i < len`, so the slot lies in the block and holds a value; nobody else has a reference, since
+        // this one to the whole allocation is exclusive.
+        unsafe { &mut *self.slot(i) }
+    }
+}
+
 impl<T> Drop for Shared<T> {
     fn drop(&mut self) {
         for i in 0..self.len {
@@ -168,6 +178,10 @@ mod tests {
         assert_eq!(at(&padded, 1) - at(&padded, 0), LINE);
         assert_eq!(at(&packed, 0) % LINE, 0);
         assert_eq!(padded.iter().copied().collect::<Vec<_>>(), [0, 1, 2]);
+        let mut packed = packed;
+        packed[1] = 7;
+        assert_eq!(packed.as_slice(), [0, 7, 2]);
+        packed[1] = 1;
         assert_eq!(packed.as_slice(), [0, 1, 2]);
         assert!(std::panic::catch_unwind(AssertUnwindSafe(|| padded.as_slice().len())).is_err());
     }

@@ -179,6 +179,18 @@ pub const METRICS: &[Metric] = {
         declare("split_depth", "parts", Lower, "Parts on the longest way from a whole mesh to a leaf."),
         declare("build_time", "ns", Lower, "Time of building the tree over the leaves."),
         declare("build_rate", "Mleaves/s", Higher, "Millions of leaves built into the tree a second."),
+        declare(
+            "refit_time",
+            "ns",
+            Lower,
+            "Time a frame of bringing the tree up to date with what moved: transforms, volumes, forgetting.",
+        ),
+        declare(
+            "nodes_refitted",
+            "nodes",
+            Lower,
+            "Nodes a frame whose volumes changed, so that what was kept of them is forgotten.",
+        ),
         declare("boxes_visible", "boxes", Lower, "Boxes not found to be outside."),
         declare("time_per_box", "ns", Lower, "The median frame's time over the boxes there are."),
         declare("bytes_per_second", "B/s", Higher, "Bytes of all boxes over the median frame's time."),

@@ -60,7 +60,7 @@ impl SkipTree {
     /// # Panics
     /// If `node` is not in the tree.
     #[inline]
-    pub fn children(&self, node: u32) -> impl Iterator<Item = u32> {
+    pub fn children(&self, node: u32) -> impl Iterator<Item = u32> + Clone {
         let end = self.nodes[node as usize].end;
         let first = Some(node + 1).filter(|child| *child < end);
         std::iter::successors(first, move |child| {

@@ -1,10 +1,12 @@
 //! Other volumes for the nodes of a tree than their axis-aligned boxes: a true hierarchy of each kind, fitted
 //! to all geometry at and below a node.
 
-use glam::Vec3;
+use std::ops::Range;
 
-use super::{NO_SOURCE, SkipTree};
-use crate::geometry::{KDop, Obb, Sphere};
+use glam::{Affine3A, Vec3};
+
+use super::{SkipNode, SkipTree};
+use crate::geometry::{Aabb, KDop, Obb, Sphere};
 use crate::scene::Scene;
 
 /// One volume for each node of a [`SkipTree`], in its order.
@@ -31,79 +33,103 @@ pub struct VolumeKind {
     pub name: &'static str,
     /// What it is, in a few words.
     pub about: &'static str,
-    fit: fn(&Scene, &SkipTree) -> Volumes,
+    fit: fn(&Points) -> Volumes,
 }
 
 /// All kinds.
 pub const VOLUME_KINDS: &[VolumeKind] = &[
-    VolumeKind { name: "aabb", about: "axis-aligned boxes", fit: |_, _| Volumes::Aabb },
+    VolumeKind { name: "aabb", about: "axis-aligned boxes", fit: |_| Volumes::Aabb },
     VolumeKind {
         name: "aabb_as_obb",
         about: "axis-aligned boxes tested as oriented ones, as Paper I did (section 4)",
-        fit: |_, tree| Volumes::Obb(tree.nodes.iter().map(|node| Obb::from(node.bounds)).collect()),
+        fit: |points| {
+            Volumes::Obb(points.each(|_, points| Obb::from(Aabb::of_points(points.iter().copied()))))
+        },
     },
-    VolumeKind { name: "obb", about: "oriented boxes, the least surface of three frames", fit: oriented },
+    VolumeKind {
+        name: "obb",
+        about: "oriented boxes, the least surface of three frames",
+        fit: |points| Volumes::Obb(points.each(|own, points| Obb::of_points(points, own.as_slice()))),
+    },
     VolumeKind {
         name: "sphere",
         about: "bounding spheres",
-        fit: |scene, tree| Volumes::Sphere(each(scene, tree, |_, points| Sphere::of_points(points))),
+        fit: |points| Volumes::Sphere(points.each(|_, points| Sphere::of_points(points))),
     },
     VolumeKind {
         name: "14dop",
         about: "14-DOPs",
-        fit: |scene, tree| Volumes::Dop14(each(scene, tree, |_, points| KDop::of_points(points))),
+        fit: |points| Volumes::Dop14(points.each(|_, points| KDop::of_points(points))),
     },
     VolumeKind {
         name: "18dop",
         about: "18-DOPs",
-        fit: |scene, tree| Volumes::Dop18(each(scene, tree, |_, points| KDop::of_points(points))),
+        fit: |points| Volumes::Dop18(points.each(|_, points| KDop::of_points(points))),
     },
     VolumeKind {
         name: "26dop",
         about: "26-DOPs",
-        fit: |scene, tree| Volumes::Dop26(each(scene, tree, |_, points| KDop::of_points(points))),
+        fit: |points| Volumes::Dop26(points.each(|_, points| KDop::of_points(points))),
     },
 ];
 
 impl VolumeKind {
     /// Fits a volume to each node of the tree of a scene.
     pub fn fit(&self, scene: &Scene, tree: &SkipTree) -> Volumes {
-        (self.fit)(scene, tree)
+        (self.fit)(&Points::below(scene, tree))
+    }
+
+    /// Fits a volume to some points for each node.
+    pub(super) fn fit_points(&self, points: &Points) -> Volumes {
+        (self.fit)(points)
     }
 }
 
-/// Fits a volume to the placed vertices of each subtree, whose numbers `fit` is given too.
-fn each<V>(scene: &Scene, tree: &SkipTree, fit: impl Fn(usize, &[Vec3]) -> V) -> Vec<V> {
-    let world = scene.world_transforms();
-    // Depth-first, so the vertices of a subtree lie together as its nodes do.
-    let (mut points, mut starts) = (Vec::new(), Vec::with_capacity(tree.nodes.len() + 1));
-    for node in &tree.nodes {
-        starts.push(points.len());
-        let Some(source) = scene.nodes.get(node.source as usize) else { continue };
-        if let Some(mesh) = source.mesh {
-            let placed = world[node.source as usize];
-            let positions = &scene.meshes[mesh as usize].positions;
-            points.extend(positions.iter().map(|position| placed.transform_point3(*position)));
+/// The vertices that each node of a tree is to have a volume around.
+pub(super) struct Points {
+    points: Vec<Vec3>,
+    /// Each node's among them.
+    ranges: Vec<Range<usize>>,
+    /// Each node's own axes: what was modelled along them fits them best.
+    axes: Vec<Option<[Vec3; 3]>>,
+}
+
+impl Points {
+    /// Those placed in the world at and below each node.
+    fn below(scene: &Scene, tree: &SkipTree) -> Self {
+        let world = scene.world_transforms();
+        let place = |node: &SkipNode| world.get(node.source as usize).copied();
+        let mut points = Self::own(scene, tree, place);
+        // Depth-first, so the vertices of a subtree lie together as its nodes do.
+        let ends: Vec<usize> =
+            tree.nodes.iter().map(|node| points.ranges[node.end as usize - 1].end).collect();
+        points.ranges.iter_mut().zip(ends).for_each(|(range, end)| range.end = end);
+        points
+    }
+
+    /// Those of the mesh at each node itself, placed by `place`; no source, no place.
+    pub(super) fn own(scene: &Scene, tree: &SkipTree, place: impl Fn(&SkipNode) -> Option<Affine3A>) -> Self {
+        let mut all = Points { points: Vec::new(), ranges: Vec::new(), axes: Vec::new() };
+        for node in &tree.nodes {
+            let (start, placed) = (all.points.len(), place(node));
+            let mesh = scene.nodes.get(node.source as usize).and_then(|source| source.mesh);
+            if let (Some(mesh), Some(placed)) = (mesh, placed) {
+                let positions = &scene.meshes[mesh as usize].positions;
+                all.points.extend(positions.iter().map(|position| placed.transform_point3(*position)));
+            }
+            all.ranges.push(start..all.points.len());
+            let axes = |placed: Affine3A| [placed.x_axis, placed.y_axis, placed.z_axis].map(Vec3::from);
+            all.axes.push(placed.map(axes));
         }
+        all
     }
-    starts.push(points.len());
-    let subtree =
-        |(i, node): (usize, &super::SkipNode)| fit(i, &points[starts[i]..starts[node.end as usize]]);
-    tree.nodes.iter().enumerate().map(subtree).collect()
-}
 
-fn oriented(scene: &Scene, tree: &SkipTree) -> Volumes {
-    let world = scene.world_transforms();
-    let fit = |node: usize, points: &[Vec3]| {
-        // The node's own axes: what was modelled along them fits them best.
-        let source = tree.nodes[node].source;
-        let own = (source != NO_SOURCE).then(|| {
-            let axes = world[source as usize].matrix3;
-            [axes.x_axis, axes.y_axis, axes.z_axis].map(Vec3::from)
-        });
-        Obb::of_points(points, own.as_slice())
-    };
-    Volumes::Obb(each(scene, tree, fit))
+    /// Fits a volume for each node, given its own axes.
+    pub(super) fn each<V>(&self, fit: impl Fn(Option<[Vec3; 3]>, &[Vec3]) -> V) -> Vec<V> {
+        let one =
+            |(range, axes): (&Range<usize>, &Option<[Vec3; 3]>)| fit(*axes, &self.points[range.clone()]);
+        self.ranges.iter().zip(&self.axes).map(one).collect()
+    }
 }
 
 #[cfg(test)]
@@ -138,7 +164,8 @@ mod tests {
                 Volumes::Dop26(volumes) => fits(kind.name, &tree, &volumes),
             }
         }
-        let empty = Scene::new("nothing");
-        assert!(matches!(oriented(&empty, &SkipTree::default()), Volumes::Obb(none) if none.is_empty()));
+        let nothing = VOLUME_KINDS.iter().find(|kind| kind.name == "obb").unwrap();
+        let nothing = nothing.fit(&Scene::new("nothing"), &SkipTree::default());
+        assert!(matches!(nothing, Volumes::Obb(none) if none.is_empty()));
     }
 }

@@ -86,6 +86,7 @@ fn settings_that_are_off_are_named() {
         (("scene.copies", "0"), "setting `scene.copies` is `0`, expected a number from 1 to 10000"),
         (("scene.spacing", "wide"), "expected a number from 0 to 1000"),
         (("scene.path", "above"), "expected one of: walk, both"),
+        (("scene.moving", "0.5"), "expected the job `cull` on `threads`, found `draw` on `threads`"),
     ] {
         let error = sample(&mut cache, &cell("factory-small", "threads", &[setting])).unwrap_err();
         assert!(error.is_usage() && error.to_string().contains(part), "{error} lacks {part}");

@@ -3,6 +3,7 @@
 mod advise;
 mod command_line;
 mod compare;
+mod cull_moving;
 mod draw;
 mod experiment;
 mod house_rules;

@@ -22,6 +22,13 @@ impl Head {
     /// There are numbers for so many frames, 26 days at 30 a second; later ones carry nothing over.
     pub(super) const FRAMES: u32 = 1 << 26;
 
+    /// What is left when the volume has moved or changed: the plane, which only says what to test first. That it
+    /// was outside, and its distances, held for where it was (Paper I sec. 3.5, P1-F06).
+    #[must_use]
+    pub fn forgotten(self) -> Self {
+        Head { plane: self.plane, ..Head::default() }
+    }
+
     /// As one word, the plane in the lowest byte.
     pub fn pack(self) -> u64 {
         u64::from(self.plane)
@@ -48,6 +55,11 @@ pub trait Memory {
 
     /// Keeps this from now on.
     fn keep(&self, head: Head);
+
+    /// To be called when the volume has moved or changed: nothing is carried over to the next test.
+    fn forget(&self) {
+        self.keep(self.head().forgotten());
+    }
 
     /// The bounds kept for a plane: below the n-vertex' distance and above the p-vertex', in metres, seen
     /// from where the epoch began.

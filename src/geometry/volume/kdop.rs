@@ -31,7 +31,7 @@ const CORNERS: [Vec3; 4] = [
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KDop<const D: usize> {
     /// The least products, then the greatest.
-    ends: [[f32; D]; 2],
+    pub(super) ends: [[f32; D]; 2],
 }
 
 /// The direction of that number.

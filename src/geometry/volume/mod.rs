@@ -2,6 +2,7 @@
 
 mod aabb;
 mod kdop;
+mod movable;
 mod obb;
 mod sphere;
 
@@ -9,6 +10,7 @@ use glam::Vec3;
 
 use super::frustum::KernelPlane;
 pub use kdop::KDop;
+pub use movable::Movable;
 pub use obb::Obb;
 pub use sphere::Sphere;
 

@@ -13,10 +13,10 @@ const SAMPLE: usize = 512;
 /// A box with axes of its own, in metres; empty if an extent is negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obb {
-    centre: Vec3,
-    axes: [Vec3; 3],
+    pub(super) centre: Vec3,
+    pub(super) axes: [Vec3; 3],
     /// Half of its extent on each axis.
-    half: Vec3,
+    pub(super) half: Vec3,
 }
 
 impl Obb {
@@ -27,24 +27,30 @@ impl Obb {
     /// vectors; they need not be at right angles, but the box is small only if they are. `None` if an axis
     /// is zero or not a number, or if they lie in a plane.
     pub fn with_axes(axes: [Vec3; 3], points: &[Vec3]) -> Option<Self> {
+        Self::spanned(axes, points.iter().map(|point| point.as_dvec3()))
+    }
+
+    /// The same around points in double precision.
+    pub(super) fn spanned(axes: [Vec3; 3], points: impl Iterator<Item = DVec3>) -> Option<Self> {
         let axes = axes.map(|axis| axis.as_dvec3().normalize_or_zero().as_vec3());
         let exact = DMat3::from_cols(axes[0].as_dvec3(), axes[1].as_dvec3(), axes[2].as_dvec3());
         if exact.determinant().abs() < 1e-3 {
             return None;
         }
-        if points.is_empty() {
-            return Some(Self { axes, ..Self::EMPTY });
-        }
         // A point's coordinates are those of the axes as they were rounded, so the box holds it exactly.
         let coordinates = exact.inverse();
         let (mut low, mut high, mut odd) = (DVec3::INFINITY, DVec3::NEG_INFINITY, false);
         for point in points {
-            let at = coordinates * point.as_dvec3();
+            let at = coordinates * point;
             odd |= !at.is_finite();
             (low, high) = (low.min(at), high.max(at));
         }
         if odd {
             return Some(Self { centre: Vec3::NAN, axes, half: Vec3::ZERO });
+        }
+        if low.x > high.x {
+            // There were none.
+            return Some(Self { axes, ..Self::EMPTY });
         }
         let centre = (exact * ((low + high) / 2.0)).as_vec3();
         // From the centre as it was rounded, and rounded up.
@@ -74,6 +80,21 @@ impl Obb {
             .into_iter()
             .find_map(|axes| Self::with_axes(axes, points))
             .unwrap_or(Self::EMPTY)
+    }
+
+    /// Its corners, in metres, from what it is made of; [`Volume::corners`] are rounded.
+    pub(super) fn fine_corners(&self) -> [DVec3; 8] {
+        let half = self.half.as_dvec3();
+        let arms = [0, 1, 2].map(|axis| self.axes[axis].as_dvec3() * half[axis]);
+        std::array::from_fn(|i| {
+            let arm = |axis: usize| if i >> axis & 1 == 0 { -arms[axis] } else { arms[axis] };
+            self.centre.as_dvec3() + arm(0) + arm(1) + arm(2)
+        })
+    }
+
+    /// Whether all its numbers are finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.centre.is_finite() && self.half.is_finite() && self.axes.iter().all(|axis| axis.is_finite())
     }
 
     /// Unit vectors along its edges.

@@ -1,7 +1,8 @@
 //! What a node keeps from frame to frame, in machine words.
 //!
 //! ORDERING: Relaxed throughout. Within a frame a node's words are the business of the one processor that
-//! visits it; from frame to frame the machine's start and end of a run order them.
+//! visits it; from frame to frame the machine's start and end of a run order them, as they do what is forgotten
+//! between frames.
 
 use super::Distances;
 use crate::geometry::culling::{Head, Memory, Side};

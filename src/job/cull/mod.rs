@@ -8,16 +8,18 @@
 //! What a test keeps with a volume from frame to frame (P1-08, P1-12) is written by processors of successive
 //! frames (P2-F17): it is in machine words, read and written whole. In one frame a node is visited by one
 //! processor only, and the next frame begins when all are done with this one.
+//!
+//! Between frames objects may move: [`CullTree::refit`] takes over their new volumes.
 
 mod costs;
 mod kept;
 mod test;
 mod work;
 
-use crate::geometry::culling::{self, Motion, Side, Steps, Verdict};
+use crate::geometry::culling::{self, Memory, Motion, Side, Steps, Verdict};
 use crate::geometry::{Frustum, PLANE_COUNT};
 use crate::machine::{Layout, Machine, Shared, Word};
-use crate::structure::{SkipTree, Volumes};
+use crate::structure::{MovingTree, SkipTree, Volumes};
 pub use costs::Costs;
 use kept::Kept;
 use std::sync::{Mutex, PoisonError};
@@ -114,6 +116,24 @@ impl<M: Machine> CullTree<M> {
         let distances = machine.alloc(kept, Layout::Packed, |_| std::array::from_fn(|_| Word::new(0)));
         let volumes = NodeVolumes::new(machine, volumes, tree.nodes.len());
         CullTree { records, volumes, distances, motion: Mutex::new(None) }
+    }
+
+    /// Takes over what the last [`MovingTree::refit`] changed, and forgets what was kept about those nodes: they
+    /// are tested anew, as Paper I asks for objects that moved (section 3.5, P1-F06). It takes time for the changed
+    /// nodes only. To be called after each refit, between frames; on a simulated machine it is not billed.
+    ///
+    /// # Panics
+    /// If this tree was not made of the moving one's tree, or of volumes of another kind. A tree of boxes takes the
+    /// boxes, whatever volumes there are beside them.
+    pub fn refit(&mut self, moving: &MovingTree) {
+        let (changed, nodes) = (moving.changed(), &moving.tree().nodes);
+        assert_eq!(nodes.len(), self.records.len(), "expected the tree that this one was made of");
+        self.volumes.renew(moving.volumes(), changed);
+        for &node in changed {
+            let record = &mut self.records[node as usize];
+            record.bounds = nodes[node as usize].bounds;
+            Kept::new(&record.tested, None, false).forget();
+        }
     }
 
     /// The camera's way up to this frame.
@@ -232,5 +252,7 @@ impl<'a, M: Machine> Frame<'a, M> {
     }
 }
 
+#[cfg(test)]
+mod moving_tests;
 #[cfg(test)]
 mod tests;

@@ -26,6 +26,17 @@ macro_rules! volumes {
                 }
             }
 
+            /// Copies those of some nodes again. Nodes tested by their own boxes have none.
+            pub(super) fn renew(&mut self, volumes: &Volumes, nodes: &[u32]) {
+                match (self, volumes) {
+                    (Self::Aabb, _) => {}
+                    $((Self::$kind(kept), Volumes::$kind(volumes)) => {
+                        nodes.iter().for_each(|&node| kept[node as usize] = volumes[node as usize]);
+                    })*
+                    _ => panic!("expected volumes of the kind that the tree was made with"),
+                }
+            }
+
             /// Notes that a processor reads a node's volume.
             #[inline]
             pub(super) fn touch<P: Processor>(&self, node: usize, cpu: &P) {

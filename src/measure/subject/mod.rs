@@ -15,7 +15,7 @@ use crate::machine::simulated::{Model, ModelError};
 use crate::machine::threads::TeamSettings;
 use crate::machine::{Machine, Simulated, Threads};
 use crate::record::THREADS;
-use crate::scene::{self, Cache, CameraPath, Origin, Scene};
+use crate::scene::{self, Cache, CameraPath, Movers, Origin, Scene};
 use crate::scheme::{About, Shape};
 use crate::structure::{AabbTree, SkipTree};
 use std::collections::HashMap;
@@ -145,11 +145,12 @@ impl Known {
     }
 }
 
-/// A scene ready to be gone through: it, its tree and a camera for each frame.
+/// A scene ready to be gone through: it, its tree, a camera for each frame, and what moves.
 struct Stage {
     scene: Scene,
     tree: SkipTree,
     cameras: Vec<Camera>,
+    movers: Option<Movers>,
 }
 
 /// Near and far plane of a recorded path, which does not hold them, as shares of the scene's size.
@@ -165,6 +166,7 @@ impl SubjectCache {
     /// The stage of a cell.
     fn stage(&mut self, cell: &Cell, options: &Options) -> Result<Rc<Stage>, MeasureError> {
         let settings = settings::of_scene(cell)?;
+        staging::check_moving(cell)?;
         let key = stage_key(cell, options);
         if let Some(stage) = self.scenes.get(&key) {
             return Ok(stage.clone());
@@ -193,7 +195,8 @@ impl SubjectCache {
         }
         let tree = SkipTree::build(&AabbTree::build(&scene));
         tree.validate().map_err(failed)?;
-        let stage = Rc::new(Stage { scene, tree, cameras: path.frames });
+        let movers = staging::movers(cell, &scene, &tree, options)?;
+        let stage = Rc::new(Stage { scene, tree, cameras: path.frames, movers });
         self.scenes.insert(key, stage.clone());
         Ok(stage)
     }

@@ -128,7 +128,7 @@ fn part<'a>(cell: &'a Cell, prefix: &str) -> impl Iterator<Item = (String, Strin
 }
 
 /// What can be set about a cell's scene.
-const OF_THE_SCENE: [&str; 5] = ["path", "copies", "spacing", "fov", "off_axis"];
+const OF_THE_SCENE: [&str; 6] = ["path", "copies", "spacing", "fov", "off_axis", "moving"];
 
 /// The settings `scene.*` of a cell, by their bare names.
 ///

@@ -1,11 +1,14 @@
 //! How a scene is put on: the settings `scene.copies` and `scene.spacing`, any scene many times over (BU-10);
 //! `scene.path`, the kind of camera path, one of [`PATHS`]; `scene.fov`, the camera's full vertical angle in
-//! degrees, and `scene.off_axis`, by how many half-widths its window is moved to the right (P1-F02).
+//! degrees, and `scene.off_axis`, by how many half-widths its window is moved to the right (P1-F02);
+//! `scene.moving`, the share of the tree's leaves that move from each frame to the next, see [`Movers`] (P1-F06).
 
 use super::{Cell, MeasureError, Options};
 use crate::geometry::Lens;
 use crate::measure::Value;
-use crate::scene::{CameraPath, PATHS, Scene};
+use crate::record::THREADS;
+use crate::scene::{CameraPath, Movers, PATHS, Scene};
+use crate::structure::SkipTree;
 use std::ops::RangeInclusive;
 
 /// More would take longer to walk through than anyone waits.
@@ -17,6 +20,8 @@ const SPACING: RangeInclusive<f64> = 0.0..=1000.0;
 const FOV: RangeInclusive<f64> = 0.01..=170.0;
 /// A window a half-width to the side just holds the line of sight.
 const SHIFT: RangeInclusive<f64> = -10.0..=10.0;
+/// The setting of what moves.
+const MOVING: &str = "scene.moving";
 /// Width over height of the picture.
 const ASPECT: f32 = 4.0 / 3.0;
 
@@ -52,6 +57,32 @@ pub(super) fn path(cell: &Cell, scene: &Scene, options: &Options) -> Result<Came
         path.frames.iter_mut().for_each(|camera| camera.lens = lens);
     }
     Ok(path)
+}
+
+/// Refuses to move things where that would go unheeded: no other job refits its tree, and simulated machines do not
+/// bill it.
+pub(super) fn check_moving(cell: &Cell) -> Result<(), MeasureError> {
+    if !cell.settings.contains_key(MOVING) || cell.job == "cull" && cell.machine == THREADS {
+        return Ok(());
+    }
+    let (job, machine) = (&cell.job, &cell.machine);
+    let message = format!("expected the job `cull` on `{THREADS}`, found `{job}` on `{machine}`");
+    Err(MeasureError::Setting(format!("setting `{MOVING}`: {message}")))
+}
+
+/// What moves where a cell says so; `None` where it says nothing.
+pub(super) fn movers(
+    cell: &Cell,
+    scene: &Scene,
+    tree: &SkipTree,
+    options: &Options,
+) -> Result<Option<Movers>, MeasureError> {
+    if !cell.settings.contains_key(MOVING) {
+        return Ok(None);
+    }
+    let share = number(cell, MOVING, 0.0..=1.0, 0.0)?;
+    let leaves = (0..).zip(&tree.nodes).filter(|(index, node)| node.end == index + 1);
+    Ok(Some(Movers::new(scene, leaves.map(|(_, leaf)| leaf.source).collect(), share, options.seed)))
 }
 
 /// The lens that a cell asks for instead of the path's own.

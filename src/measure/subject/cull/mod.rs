@@ -4,8 +4,10 @@
 //! [`VOLUME_KINDS`]; `job.descent` (`pruned`, `whole_tree`, `no_work`); `job.history` (`plane`, `distances`);
 //! `job.baseline`, steps to be timed in turn with those of the cell; `job.accuracy` (`false`, `true`): what the test
 //! gives up, held against the exact one; `job.pause_ms` between frames on threads; and for each scheme `tasks`
-//! (`ranges`, `nodes`).
+//! (`ranges`, `nodes`). With `scene.moving` (see [`staging`](super::staging)) objects move between frames; the
+//! time for bringing the tree up to date is a metric of its own.
 
+mod moving;
 mod truth;
 
 use super::settings::{JobSettings, of_scheme};
@@ -20,6 +22,7 @@ use crate::machine::{Machine, Simulated, Threads};
 use crate::record::THREADS;
 use crate::scheme::tree::Scheme;
 use crate::structure::{VOLUME_KINDS, VolumeKind, Volumes};
+use moving::Moving;
 use std::borrow::Borrow;
 use std::rc::Rc;
 use std::time::Duration;
@@ -100,6 +103,7 @@ struct CullSubject<H, M: Machine> {
     costs: Costs,
     truth: Truth,
     baseline: Option<Baseline<M>>,
+    moving: Option<Moving>,
 }
 
 /// A test that is timed in turn with the cell's own, by the serial scheme.
@@ -121,16 +125,21 @@ impl<H: Borrow<M>, M: Machine> CullSubject<H, M> {
         let scheme = Scheme::new(&cell.scheme, on, cell.processors as usize, of_scheme(cell))
             .map_err(|error| MeasureError::Setting(error.to_string()))?;
         let volumes = asked.volume.fit(&stage.scene, &stage.tree);
-        let tree = CullTree::with_volumes(on, &stage.tree, &volumes, asked.history);
+        let moving = Moving::of(&stage, asked.volume);
+        let (boxes, at_rest) = match &moving {
+            Some(moving) => (moving.tree().tree(), moving.tree().volumes()),
+            None => (&stage.tree, &volumes),
+        };
+        let tree = CullTree::with_volumes(on, boxes, at_rest, asked.history);
         let truth = Truth::of(&stage, &volumes, &asked)?;
         let baseline = asked.baseline.map(|steps| {
             let history = if steps.translation { History::Distances } else { History::Plane };
-            let tree = CullTree::new(on, &stage.tree, history);
+            let tree = CullTree::new(on, boxes, history);
             let serial = Scheme::new("serial", on, 1, Default::default());
             serial.map(|scheme| Baseline { tree, scheme, steps })
         });
         let baseline = baseline.transpose().map_err(failed)?;
-        Ok(CullSubject { machine, tree, scheme, stage, asked, costs, truth, baseline })
+        Ok(CullSubject { machine, tree, scheme, stage, asked, costs, truth, baseline, moving })
     }
 }
 
@@ -170,8 +179,20 @@ impl<H: Borrow<M>, M: Machine> CullSubject<H, M> {
         let mut traversal = TraversalShare::default();
         let (mut visited, mut visible, mut imbalance, mut used) = (0, 0, 0.0, 0);
         let (mut own, mut others) = (0, 0);
+        let (mut refit, mut refitted) = (0, 0);
         for (number, camera) in self.stage.cameras.iter().enumerate() {
             let frustum = Frustum::new(camera);
+            if let Some(moving) = &mut self.moving {
+                moving.prepare(number);
+                let before = machine.now();
+                moving.refit();
+                self.tree.refit(moving.tree());
+                refit += machine.now() - before;
+                refitted += moving.tree().changed().len();
+                if let Some(baseline) = &mut self.baseline {
+                    baseline.tree.refit(moving.tree());
+                }
+            }
             if let Some(baseline) = &mut self.baseline {
                 others += baseline.go(machine, number, &frustum, self.costs)?;
             }
@@ -213,6 +234,11 @@ impl<H: Borrow<M>, M: Machine> CullSubject<H, M> {
         samples.push(Sample::of_path("time_per_visit", ns / visited.max(1) as f64));
         if self.baseline.is_some() {
             samples.push(Sample::of_path("speedup_over_baseline", others as f64 / own.max(1) as f64));
+        }
+        if self.moving.is_some() {
+            let ns = refit as f64 / machine.ticks_per_nanosecond();
+            samples.push(Sample::of_path("refit_time", ns / frames));
+            samples.push(Sample::of_path("nodes_refitted", refitted as f64 / frames));
         }
         samples.extend(self.truth.given_up());
         samples.push(Sample::of_path("load_imbalance", imbalance / frames));

@@ -6,6 +6,7 @@ mod boxes;
 mod midpoint;
 mod midpoint_tree;
 mod placed_leaves;
+mod runs;
 mod skip_tree;
 mod split;
 mod statistics;

@@ -1,8 +1,9 @@
 //! A mesh's triangles by midpoint into leaves, many at a time.
 //!
-//! What follows each other in a mesh mostly lies side by side. So triangles are moved about in runs: some of
-//! [`WINDOW`] that follow each other in the mesh, all near each other. A run whose middles all lie on one
-//! side of a plane goes there as a whole, and only one that the plane parts is looked into and becomes two.
+//! What follows each other in a mesh mostly lies side by side. So triangles are moved about in runs: those of
+//! [`WINDOW`] that follow each other in the mesh which have been on the same sides so far. A run whose middles
+//! all lie on one side of a plane goes there as a whole, and only one that the plane parts is looked into and
+//! becomes two.
 //! The boxes of triangles and of their middles are worked out once and, again, where a run is parted; all else
 //! is comparisons of whole runs. The outcome is that of the rule applied to triangles one by one
 //! ([`super::midpoint`]), to the bit; a mesh whose triangles follow each other in no order is divided no
@@ -19,16 +20,13 @@ use super::midpoint::{Bounds, most_midpoints};
 
 /// Triangles of the mesh that a run is some of: as many as a mask has bits.
 const WINDOW: usize = 32;
-/// How far apart the middles of a run may be, as a share of the width that leaves will have: wider ones
-/// would be parted by every other plane, narrower ones be too many.
-const SPREAD: f32 = 0.125;
 /// Parts below this many triangles are one thread's, and so many are brought into runs at a time.
 const GRAIN: usize = 1 << 15;
 
 /// Of the sum of three corners: the middle of a triangle.
 const THIRD: f32 = 1.0 / 3.0;
 
-/// Some triangles of a window of the mesh, neighbours in a list of runs if they share one.
+/// Some triangles of a window of the mesh; a part has one run of each at most, but for singles of a median.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     bounds: Bounds,
@@ -40,12 +38,6 @@ struct Run {
     mask: u32,
     /// How many.
     count: u32,
-}
-
-/// Windows and which of their triangles are in some runs, so that those come in the order of the mesh.
-fn windows(runs: &[Run]) -> impl Iterator<Item = (u32, u32)> {
-    let shared = |runs: &[Run]| (runs[0].start, runs.iter().fold(0, |all, run| all | run.mask));
-    runs.chunk_by(|one, next| one.start == next.start).map(shared)
 }
 
 /// The bits set in a mask, the lowest first.
@@ -102,8 +94,6 @@ struct Halves {
 pub(super) struct Runs<'a> {
     pub(super) vertices: &'a [Vec3],
     pub(super) triangles: &'a [[u32; 3]],
-    /// The mesh's greatest extent, metres: a guide only, that no result depends on.
-    pub(super) extent: f32,
 }
 
 impl Runs<'_> {
@@ -116,12 +106,7 @@ impl Runs<'_> {
         }
         let chunk = if rayon::current_num_threads() == 1 { count.next_multiple_of(WINDOW) } else { GRAIN };
         let chunks = self.triangles.par_chunks(chunk).enumerate();
-        // Leaves of a surface grow with the square root of what they hold.
-        let spread = match count > most {
-            true => self.extent * (most as f32 / count as f32).sqrt() * SPREAD,
-            false => f32::INFINITY,
-        };
-        let chunks = chunks.map(|(index, triangles)| self.runs(index * chunk, triangles, spread));
+        let chunks = chunks.map(|(index, triangles)| self.runs(index * chunk, triangles));
         let (runs, bounds): (Vec<_>, Vec<_>) = chunks.collect::<Option<Vec<_>>>()?.into_iter().unzip();
         let bounds = bounds.into_iter().fold(Bounds::EMPTY, Bounds::union);
         let midpoints = most_midpoints(count, most);
@@ -130,37 +115,21 @@ impl Runs<'_> {
         Some(self.part(runs, whole, most, order))
     }
 
-    /// Brings some triangles, the first of which is `start`, into runs whose middles are no more than `spread`
-    /// apart on any axis.
-    fn runs(&self, start: usize, triangles: &[[u32; 3]], spread: f32) -> Option<(Vec<Run>, Bounds)> {
+    /// Brings some triangles, the first of which is `start`, into runs.
+    fn runs(&self, start: usize, triangles: &[[u32; 3]]) -> Option<(Vec<Run>, Bounds)> {
         let exists =
             |triangle: &[u32; 3]| triangle.iter().all(|vertex| (*vertex as usize) < self.vertices.len());
         let mut all = Bounds::EMPTY;
-        let mut runs = Vec::with_capacity(2 * triangles.len().div_ceil(WINDOW));
+        let mut runs = Vec::with_capacity(triangles.len().div_ceil(WINDOW));
         for (index, triangles) in triangles.chunks(WINDOW).enumerate() {
             if !triangles.iter().all(exists) {
                 return None;
             }
             let run = self.run((start + index * WINDOW) as u32, u32::MAX >> (WINDOW - triangles.len()));
             all = all.union(run.bounds);
-            self.gather(run, spread, &mut runs);
+            runs.push(run);
         }
         Some((runs, all))
-    }
-
-    /// Adds a run to others, in pieces if it is spread too wide.
-    fn gather(&self, run: Run, spread: f32, runs: &mut Vec<Run>) {
-        let (axis, plane) = run.middles.cut();
-        if run.middles.high[axis] - run.middles.low[axis] > spread {
-            let first = self.below(&run, axis, plane);
-            // Rounding may leave no middle between the two ends.
-            if first != 0 && first != run.mask {
-                self.gather(self.run(run.start, first), spread, runs);
-                self.gather(self.run(run.start, run.mask & !first), spread, runs);
-                return;
-            }
-        }
-        runs.push(run);
     }
 
     /// The run of some triangles, at least one.
@@ -286,7 +255,7 @@ impl Runs<'_> {
         let middles = runs[from..].iter().fold(Bounds::EMPTY, |all, run| all.union(run.middles));
         let axis = middles.longest();
         let mut singles = Vec::new();
-        for (start, mask) in windows(&runs[from..]) {
+        for Run { start, mask, .. } in runs[from..].iter().copied() {
             singles.extend(bits(mask).map(|bit| self.run(start, 1 << bit)));
         }
         runs.truncate(from);
@@ -355,7 +324,7 @@ impl Alone<'_, '_> {
     }
 
     fn leaf(&mut self, from: usize, part: Part, mut order: &mut [[u32; 3]]) {
-        for (start, mask) in windows(&self.runs[from..]) {
+        for Run { start, mask, .. } in self.runs[from..].iter().copied() {
             let (places, rest) = order.split_at_mut(mask.count_ones() as usize);
             let start = start as usize;
             if mask.trailing_ones() as usize == places.len() {

@@ -214,7 +214,7 @@ impl Runs<'_> {
         let (mut count, mut kept) = (0, from);
         for at in from..runs.len() {
             let run = &runs[at];
-            if !(run.middles.low[axis] < plane) {
+            if run.middles.low[axis] >= plane {
                 other_bounds = other_bounds.union(run.bounds);
                 runs[kept] = *run;
                 kept += 1;

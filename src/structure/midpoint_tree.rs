@@ -1,10 +1,17 @@
 //! A binary tree of boxes over objects, built top-down by midpoint: Bubenicek 2020, sec. 2.
+//!
+//! Objects are moved about with their boxes, so that all that is looked at lies one after the other. A part
+//! of n objects becomes 2n - 1 nodes, so every subtree's place in the tree is known before it is built and
+//! threads share nothing.
 
-use glam::Vec3A;
+use glam::{Vec3A, Vec4};
 
-use super::midpoint::{Items, Part, Place, divide};
+use super::midpoint::{Bounds, most_midpoints};
 use super::{NO_SOURCE, SkipNode, SkipTree};
 use crate::geometry::Aabb;
+
+/// Parts below this many objects are one thread's: a join costs as much as some hundreds of them.
+const GRAIN: usize = 4096;
 
 /// Something that is drawn or left out as a whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,35 +40,153 @@ pub struct MidpointStatistics {
 /// Works on the threads of the current rayon pool; the result is the same whatever their number.
 ///
 /// An object whose box is empty, infinite or NaN goes wherever the others leave room, and is in the tree all
-/// the same; boxes above a NaN are of no use to culling, which says "intersecting" of them.
+/// the same; boxes above a NaN reach to infinity on that side, so that culling says "intersecting" of them.
 ///
 /// # Panics
 /// If there are more than 2^31 objects, whose nodes could not be counted.
 pub fn midpoint_tree(objects: &[Object]) -> (SkipTree, MidpointStatistics) {
     assert!(objects.len() <= 1 << 31, "{} objects are more than a tree can hold", objects.len());
-    let mut order: Vec<u32> = (0..objects.len() as u32).collect();
-    let parts = divide(&Boxes(objects), &mut order, 1);
-    let node = |(index, part): (usize, Part)| {
-        let source = if part.end as usize == index + 1 { order[part.start as usize] } else { NO_SOURCE };
-        let triangles = objects.get(source as usize).map_or(0, |object| object.triangles);
-        SkipNode { bounds: part.bounds, end: part.end, triangles, source }
-    };
-    let nodes = parts.nodes.into_iter().enumerate().map(node).collect();
-    (SkipTree { nodes }, MidpointStatistics { medians: parts.medians, depth: parts.depth })
+    let mut boxes: Vec<Boxed> =
+        objects.iter().zip(0..).map(|(object, index)| Boxed::new(object, index)).collect();
+    let mut spare = boxes.clone();
+    let nothing = SkipNode { bounds: Aabb::EMPTY, end: 0, triangles: 0, source: NO_SOURCE };
+    let mut nodes = vec![nothing; (2 * objects.len()).saturating_sub(1)];
+    let mut statistics = MidpointStatistics::default();
+    if !objects.is_empty() {
+        let part = Part { first: 0, midpoints: most_midpoints(objects.len(), 1), depth: 1 };
+        statistics = Builder { objects }.part(&mut boxes, &mut spare, &mut nodes, part);
+    }
+    (SkipTree { nodes }, statistics)
 }
 
-/// Objects by index.
-struct Boxes<'a>(&'a [Object]);
+/// An object as it is moved about.
+#[derive(Clone, Copy, Debug)]
+struct Boxed {
+    /// Least corner of its box and, by bits, its index.
+    low: Vec4,
+    /// Greatest corner.
+    high: Vec4,
+}
 
-impl Items for Boxes<'_> {
-    type Item = u32;
+impl Boxed {
+    #[inline]
+    fn new(object: &Object, index: u32) -> Self {
+        // What is not a number may be anywhere.
+        let or = |at: f32, anywhere: f32| if at.is_nan() { anywhere } else { at };
+        let low = object.bounds.min.map(|at| or(at, f32::NEG_INFINITY));
+        let high = object.bounds.max.map(|at| or(at, f32::INFINITY));
+        Self { low: low.extend(f32::from_bits(index)), high: high.extend(0.0) }
+    }
+
+    fn index(&self) -> u32 {
+        self.low.w.to_bits()
+    }
+
+    /// The point that decides on which side of a cut it goes, on one axis.
+    #[inline]
+    fn middle(&self, axis: usize) -> f32 {
+        let (low, high): (&[f32; 4], &[f32; 4]) = (self.low.as_ref(), self.high.as_ref());
+        low[axis] * 0.5 + high[axis] * 0.5
+    }
+}
+
+/// A part before it is divided.
+#[derive(Clone, Copy)]
+struct Part {
+    /// The index of its own node.
+    first: u32,
+    /// How many midpoint cuts may still be made on the way down.
+    midpoints: u32,
+    /// Nodes on the way to it, itself included.
+    depth: u32,
+}
+
+struct Builder<'a> {
+    objects: &'a [Object],
+}
+
+impl Builder<'_> {
+    /// Divides some objects, at least one, into `nodes`, of which there are as many as it takes; `spare` is
+    /// as long as `boxes`.
+    fn part(
+        &self,
+        boxes: &mut [Boxed],
+        spare: &mut [Boxed],
+        nodes: &mut [SkipNode],
+        part: Part,
+    ) -> MidpointStatistics {
+        if let [only] = boxes {
+            nodes[0] = self.leaf(only, part.first);
+            return MidpointStatistics { medians: 0, depth: part.depth };
+        }
+        let bounds = common(boxes);
+        let (count, (axis, plane)) = (boxes.len(), bounds.cut());
+        let mut first = if part.midpoints > 0 { cut(boxes, spare, axis, plane) } else { 0 };
+        let is_parted = (1..count).contains(&first);
+        if !is_parted {
+            first = cut_at_median(boxes);
+        }
+        let end = part.first + nodes.len() as u32;
+        nodes[0] = SkipNode { bounds: bounds.aabb(), end, triangles: 0, source: NO_SOURCE };
+        let (boxes, other_boxes) = boxes.split_at_mut(first);
+        let (spare, other_spare) = spare.split_at_mut(first);
+        let (nodes, other_nodes) = nodes[1..].split_at_mut(2 * first - 1);
+        let half = Part {
+            first: part.first + 1,
+            midpoints: part.midpoints.saturating_sub(1),
+            depth: part.depth + 1,
+        };
+        let other_half = Part { first: half.first + nodes.len() as u32, ..half };
+        let mut one = move || self.part(boxes, spare, nodes, half);
+        let mut other = move || self.part(other_boxes, other_spare, other_nodes, other_half);
+        let (one, other) = if count > GRAIN { rayon::join(one, other) } else { (one(), other()) };
+        MidpointStatistics {
+            medians: one.medians + other.medians + u32::from(!is_parted),
+            depth: one.depth.max(other.depth),
+        }
+    }
 
     #[inline]
-    fn place(&self, object: u32) -> Place {
-        let bounds = &self.0[object as usize].bounds;
-        let (low, high) = (Vec3A::from(bounds.min), Vec3A::from(bounds.max));
-        Place { low, high, middle: low * 0.5 + high * 0.5 }
+    fn leaf(&self, only: &Boxed, first: u32) -> SkipNode {
+        let object = &self.objects[only.index() as usize];
+        SkipNode { bounds: object.bounds, end: first + 1, triangles: object.triangles, source: only.index() }
     }
+}
+
+/// The box around all.
+#[inline]
+fn common(boxes: &[Boxed]) -> Bounds {
+    let ends = [Vec4::INFINITY, Vec4::NEG_INFINITY];
+    let [low, high] = boxes.iter().fold(ends, |[low, high], one| [low.min(one.low), high.max(one.high)]);
+    Bounds { low: Vec3A::from_vec4(low), high: Vec3A::from_vec4(high) }
+}
+
+/// Brings the boxes whose middle lies below a plane before the others, both in the order they had; how many
+/// these are.
+#[inline]
+fn cut(boxes: &mut [Boxed], spare: &mut [Boxed], axis: usize, plane: f32) -> usize {
+    // Each is written to both sides and counted on one: the side may be as good as random, and a branch that
+    // is guessed wrong costs more than all this.
+    let (mut first, mut second) = (0, 0);
+    for at in 0..boxes.len() {
+        let one = boxes[at];
+        let is_first = one.middle(axis) < plane;
+        boxes[first] = one;
+        spare[second] = one;
+        first += usize::from(is_first);
+        second += usize::from(!is_first);
+    }
+    boxes[first..].copy_from_slice(&spare[..second]);
+    first
+}
+
+/// Sorts two boxes or more by their middles, for a cut between two halves; how many the first has.
+fn cut_at_median(boxes: &mut [Boxed]) -> usize {
+    // The longest axis may be one all middles agree on: what counts now is where they differ.
+    let middles = boxes.iter().map(|one| Vec3A::from([0, 1, 2].map(|axis| one.middle(axis))));
+    let axis = middles.fold(Bounds::EMPTY, Bounds::with).longest();
+    boxes.sort_by(|one, other| one.middle(axis).total_cmp(&other.middle(axis)));
+    boxes.len() / 2
 }
 
 #[cfg(test)]

@@ -39,6 +39,49 @@ fn check(objects: &[Object]) -> MidpointStatistics {
     statistics
 }
 
+/// The oracle: parts as lists, boxes taken anew from all objects, no threads. None where a median is due.
+fn plain(objects: &[Object], part: Vec<u32>, nodes: &mut Vec<SkipNode>) -> Option<()> {
+    let here = nodes.len();
+    let bounds = part.iter().fold(Aabb::EMPTY, |all, object| all.union(objects[*object as usize].bounds));
+    nodes.push(SkipNode { bounds, end: 0, triangles: 0, source: NO_SOURCE });
+    if let [only] = part[..] {
+        (nodes[here].triangles, nodes[here].source) = (objects[only as usize].triangles, only);
+    } else {
+        let size = bounds.size().to_array();
+        let axis = (0..3).rev().max_by(|a, b| size[*a].total_cmp(&size[*b])).expect("three axes");
+        let below = |object: &u32| objects[*object as usize].bounds.centre()[axis] < bounds.centre()[axis];
+        let (one, other): (Vec<_>, Vec<_>) = part.into_iter().partition(below);
+        if one.is_empty() || other.is_empty() {
+            return None;
+        }
+        plain(objects, one, nodes)?;
+        plain(objects, other, nodes)?;
+    }
+    nodes[here].end = nodes.len() as u32;
+    Some(())
+}
+
+#[test]
+fn trees_without_medians_are_those_of_the_oracle() {
+    let mut random = SplitMix64::new(2);
+    let mut compared = 0;
+    for round in 0..200 {
+        let reach = [1.0, 1e-3, 1e6][round % 3];
+        let far = [0.0, 4.0][round % 2] * reach as f32;
+        let objects = objects(1 + round % 60, |_| {
+            Vec3::from([(); 3].map(|()| random.between(-reach, reach) as f32)) + far
+        });
+        let mut expected = Vec::new();
+        let all_midpoints = plain(&objects, (0..objects.len() as u32).collect(), &mut expected).is_some();
+        let (tree, statistics) = midpoint_tree(&objects);
+        if all_midpoints && statistics.medians == 0 {
+            assert_eq!(tree.nodes, expected, "round {round}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 20, "{compared}");
+}
+
 #[test]
 fn every_object_is_a_leaf() {
     let mut random = SplitMix64::new(1);
@@ -63,7 +106,13 @@ fn objects_in_one_place_and_outliers_keep_the_depth_bounded() {
     tree.validate().unwrap();
     odd[5].bounds.min.x = f32::NAN;
     odd[6].bounds.max.y = f32::INFINITY;
-    assert_eq!(midpoint_tree(&odd).0.nodes.iter().filter(|node| node.source != NO_SOURCE).count(), 9);
+    let (tree, _) = midpoint_tree(&odd);
+    assert_eq!(tree.nodes.iter().filter(|node| node.source != NO_SOURCE).count(), 9);
+    // Whatever stands above a NaN may be anywhere on that side.
+    let leaf = tree.nodes.iter().position(|node| node.source == 5).unwrap();
+    for node in &tree.nodes[..leaf] {
+        assert!(node.end as usize <= leaf || node.bounds.min.x == f32::NEG_INFINITY);
+    }
 }
 
 #[test]

@@ -7,6 +7,7 @@ mod midpoint;
 mod midpoint_tree;
 mod moving_tree;
 mod placed_leaves;
+mod runs;
 mod skip_tree;
 mod split;
 mod statistics;

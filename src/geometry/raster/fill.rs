@@ -12,19 +12,20 @@ pub(super) const GUARD: u32 = 1 << 20;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Corner {
     /// To the right and downward from the upper left corner of the picture, in 1/256 of a pixel.
-    pub place: [i64; 2],
+    pub place: [i32; 2],
     /// One over the depth in metres, which unlike the depth is even across the picture.
     pub nearness: f64,
 }
 
 impl Corner {
     /// Where a point before the lens falls; it must be clipped.
+    #[inline]
     pub(super) fn of(seen: &Seen) -> Self {
         let nearness = 1.0 / seen.depth;
         // Rounded by cutting a positive number short, half up: quicker than to the nearest. The cast holds what
         // lies beyond the guard band, which the last corner cut may by a rounding.
-        let (steps, shift) = (STEPS as f64, 2 * STEPS * i64::from(GUARD));
-        let snap = |at: f64| (at * nearness * steps + shift as f64 + 0.5) as i64 - shift;
+        let (steps, shift) = (STEPS as f64, 2 * STEPS as i32 * GUARD as i32);
+        let snap = |at: f64| ((at * nearness * steps + f64::from(shift) + 0.5) as i32).saturating_sub(shift);
         Self { place: [snap(seen.x), snap(seen.y)], nearness }
     }
 }
@@ -44,8 +45,9 @@ pub struct Coverage {
 impl Coverage {
     /// Sets a triangle up for a picture of `width` x `height` pixels; `None` if it has no area.
     /// Either winding will do.
+    #[inline]
     pub fn new(mut corners: [Corner; 3], [width, height]: [u32; 2]) -> Option<Self> {
-        let [a, b, c] = corners.map(|corner| corner.place);
+        let [a, b, c] = corners.map(|corner| corner.place.map(i64::from));
         let mut area = edge(a, b, c);
         if area < 0 {
             corners.swap(1, 2);
@@ -64,7 +66,11 @@ impl Coverage {
     /// Visits each pixel covered, with its nearness there (one over metres): column, row, nearness.
     #[inline]
     pub fn fill(&self, mut visit: impl FnMut(u32, u32, f32)) {
-        let [a, b, c] = self.corners.map(|corner| corner.place);
+        // Most triangles of a fine mesh lie between the centres of pixels.
+        if self.columns[0] >= self.columns[1] || self.rows[0] >= self.rows[1] {
+            return;
+        }
+        let [a, b, c] = self.corners.map(|corner| corner.place.map(i64::from));
         let edges = [(b, c), (c, a), (a, b)];
         let share = self.corners.map(|corner| corner.nearness / self.area as f64);
         let first = [self.columns[0] * STEPS + STEPS / 2, self.rows[0] * STEPS + STEPS / 2];

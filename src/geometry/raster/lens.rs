@@ -3,6 +3,7 @@
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec3};
 
 use super::super::Camera;
+use super::Corner;
 
 /// How much narrower the depth range drawn is than the camera's, as a share: what culling has rightly left
 /// out, because it lies just beyond the near or far plane, is never drawn for a rounding.
@@ -35,8 +36,20 @@ pub struct Seen {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Outside(pub(super) u8);
 
+/// A vertex as far as it can be worked out without the triangle it is of.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spot {
+    /// Where on the grid of pixels it is, if it `is_inside`.
+    pub corner: Corner,
+    /// Which planes of the view it is outside.
+    pub outside: Outside,
+    /// Whether it is inside all planes: a triangle of three such is not changed by clipping.
+    pub is_inside: bool,
+}
+
 impl Outside {
     /// Whether some plane has all three points outside, so that nothing between them can be seen.
+    #[inline]
     pub fn shared(self, other: Self, third: Self) -> bool {
         self.0 & other.0 & third.0 != 0
     }
@@ -70,16 +83,24 @@ impl Eye {
     #[inline]
     pub fn see(&self, vertex: Vec3) -> Seen {
         let DVec3 { x, y, z: depth } = self.to_lens.transform_point3(vertex.as_dvec3());
-        let sides = [
-            x < 0.0,
-            x > self.size[0] * depth,
-            depth < self.near,
-            depth > self.far,
-            y < 0.0,
-            y > self.size[1] * depth,
-        ];
-        let bits = sides.iter().zip(0..).map(|(side, bit)| u8::from(*side) << bit);
-        Seen { x, y, depth, outside: Outside(bits.fold(0, |all, bit| all | bit)) }
+        // Spelt out: a loop over these is not unrolled, and each vertex comes by here.
+        let outside = u8::from(x < 0.0)
+            | u8::from(x > self.size[0] * depth) << 1
+            | u8::from(depth < self.near) << 2
+            | u8::from(depth > self.far) << 3
+            | u8::from(y < 0.0) << 4
+            | u8::from(y > self.size[1] * depth) << 5;
+        Seen { x, y, depth, outside: Outside(outside) }
+    }
+
+    /// Brings a vertex of the mesh before the lens and, if it needs no clipping, onto the grid of pixels.
+    #[inline]
+    pub fn spot(&self, vertex: Vec3) -> Spot {
+        let seen = self.see(vertex);
+        // A NaN is outside no plane and has no margin.
+        let is_inside = seen.outside.0 == 0 && self.margins(&seen).iter().all(|margin| *margin >= 0.0);
+        let corner = if is_inside { Corner::of(&seen) } else { Corner::default() };
+        Spot { corner, outside: seen.outside, is_inside }
     }
 
     /// The six distances that must not be negative for a point to be drawn: near, far, and the edges of a

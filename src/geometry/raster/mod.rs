@@ -11,7 +11,7 @@ mod lens;
 
 pub use clip::Clipped;
 pub use fill::{Corner, Coverage};
-pub use lens::{Eye, Outside, Seen};
+pub use lens::{Eye, Outside, Seen, Spot};
 
 #[cfg(test)]
 mod tests;

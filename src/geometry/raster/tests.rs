@@ -54,7 +54,7 @@ fn expected(corners: [Corner; 3]) -> Vec<(u32, u32)> {
 }
 
 fn corner(place: [i64; 2]) -> Corner {
-    Corner { place, nearness: 1.0 }
+    Corner { place: place.map(|at| at as i32), nearness: 1.0 }
 }
 
 #[test]

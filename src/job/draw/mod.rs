@@ -6,6 +6,7 @@
 //! filled. The picture is the same whatever leaves the triangles are drawn in and in whatever order, as
 //! long as none that can be seen is missing: that is the oracle of every culled frame.
 
+mod buffers;
 mod picture;
 
 use glam::Affine3A;
@@ -14,6 +15,7 @@ use crate::geometry::Camera;
 use crate::geometry::raster::Eye;
 use crate::scene::Scene;
 use crate::structure::PlacedLeaves;
+use buffers::Buffers;
 pub use picture::{MOST_PIXELS, Picture};
 
 /// What drawing a frame took.
@@ -48,17 +50,20 @@ impl std::ops::AddAssign for Counts {
     }
 }
 
-/// A scene and its leaves, ready to be drawn.
+/// A scene's leaves, ready to be drawn.
 pub struct Drawing<'a> {
-    scene: &'a Scene,
     leaves: &'a PlacedLeaves,
     worlds: Vec<Affine3A>,
+    /// What each mesh's leaves draw from.
+    buffers: Vec<Buffers>,
 }
 
 impl<'a> Drawing<'a> {
     /// A valid scene, and the leaves made of it.
-    pub fn new(scene: &'a Scene, leaves: &'a PlacedLeaves) -> Self {
-        Self { scene, leaves, worlds: scene.world_transforms() }
+    pub fn new(scene: &Scene, leaves: &'a PlacedLeaves) -> Self {
+        let buffers = scene.meshes.iter().zip(&leaves.splits);
+        let buffers = buffers.map(|(mesh, split)| Buffers::new(&mesh.positions, split)).collect();
+        Self { leaves, worlds: scene.world_transforms(), buffers }
     }
 
     /// Clears a picture and draws some leaves, by index into [`PlacedLeaves::leaves`].
@@ -84,10 +89,7 @@ impl<'a> Drawing<'a> {
                     eye.insert((placed.node, new)).1
                 }
             };
-            let split = &self.leaves.splits[placed.mesh as usize];
-            let range = split.leaves[placed.leaf as usize].triangles.clone();
-            let triangles = &split.triangles[range.start as usize..range.end as usize];
-            let vertices = &self.scene.meshes[placed.mesh as usize].positions;
+            let (vertices, triangles) = self.buffers[placed.mesh as usize].of_leaf(placed.leaf);
             picture.draw(&eye, vertices, triangles, &mut counts);
         }
         counts

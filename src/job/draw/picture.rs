@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::Counts;
-use crate::geometry::raster::{Clipped, Coverage, Eye, Seen};
+use crate::geometry::raster::{Clipped, Coverage, Eye, Spot};
 
 /// The most pixels a picture may have: 16 K across and down.
 pub const MOST_PIXELS: u32 = 1 << 28;
@@ -14,17 +14,15 @@ pub const MOST_PIXELS: u32 = 1 << 28;
 pub struct Picture {
     width: u32,
     nearness: Vec<f32>,
-    /// The vertices of the mesh at hand before the lens, each as far as its number says that it is of the
-    /// draw call at hand.
-    seen: Vec<(u32, Seen)>,
-    call: u32,
+    /// The vertices of the draw call at hand before the lens.
+    spots: Vec<Spot>,
 }
 
 impl Picture {
     /// An empty picture; `None` if it has no pixels or more than [`MOST_PIXELS`].
     pub fn new(width: u32, height: u32) -> Option<Self> {
         let pixels = width.checked_mul(height).filter(|pixels| (1..=MOST_PIXELS).contains(pixels))?;
-        Some(Self { width, nearness: vec![0.0; pixels as usize], seen: Vec::new(), call: 0 })
+        Some(Self { width, nearness: vec![0.0; pixels as usize], spots: Vec::new() })
     }
 
     /// Width and height in pixels.
@@ -54,52 +52,35 @@ impl Picture {
         self.nearness.fill(0.0);
     }
 
-    /// One draw call.
+    /// One draw call: triangles by index into `vertices`, all of which are used.
     pub(super) fn draw(&mut self, eye: &Eye, vertices: &[Vec3], triangles: &[[u32; 3]], counts: &mut Counts) {
-        self.begin_call(vertices.len());
         let size = self.size();
         counts.draw_calls += 1;
+        counts.vertices += vertices.len() as u64;
         counts.triangles += triangles.len() as u64;
+        let mut spots = std::mem::take(&mut self.spots);
+        spots.clear();
+        spots.extend(vertices.iter().map(|vertex| eye.spot(*vertex)));
         for triangle in triangles {
-            let corners = triangle.map(|vertex| self.see(eye, vertices, vertex as usize, counts));
-            let [a, b, c] = corners.map(|corner| corner.outside);
-            if a.shared(b, c) {
+            let [a, b, c] = triangle.map(|vertex| &spots[vertex as usize]);
+            if a.outside.shared(b.outside, c.outside) {
                 counts.outside += 1;
-                continue;
-            }
-            for piece in Clipped::new(eye, corners).triangles() {
-                if let Some(coverage) = Coverage::new(piece, size) {
-                    counts.set_up += 1;
-                    self.fill(&coverage, counts);
+            } else if a.is_inside && b.is_inside && c.is_inside {
+                self.fill(Coverage::new([a.corner, b.corner, c.corner], size), counts);
+            } else {
+                let corners = triangle.map(|vertex| eye.see(vertices[vertex as usize]));
+                for piece in Clipped::new(eye, corners).triangles() {
+                    self.fill(Coverage::new(piece, size), counts);
                 }
             }
         }
-    }
-
-    fn begin_call(&mut self, vertices: usize) {
-        if self.seen.len() < vertices {
-            self.seen.resize(vertices, (0, Seen::default()));
-        }
-        self.call = self.call.wrapping_add(1);
-        if self.call == 0 {
-            // Numbers come round: none of those before may count any more.
-            self.seen.fill((0, Seen::default()));
-            self.call = 1;
-        }
+        self.spots = spots;
     }
 
     #[inline]
-    fn see(&mut self, eye: &Eye, vertices: &[Vec3], vertex: usize, counts: &mut Counts) -> Seen {
-        let known = &mut self.seen[vertex];
-        if known.0 != self.call {
-            *known = (self.call, eye.see(vertices[vertex]));
-            counts.vertices += 1;
-        }
-        known.1
-    }
-
-    #[inline]
-    fn fill(&mut self, coverage: &Coverage, counts: &mut Counts) {
+    fn fill(&mut self, coverage: Option<Coverage>, counts: &mut Counts) {
+        let Some(coverage) = coverage else { return };
+        counts.set_up += 1;
         let (pixels, width) = (&mut self.nearness, self.width);
         coverage.fill(|column, row, nearness| {
             let pixel = &mut pixels[(row * width + column) as usize];

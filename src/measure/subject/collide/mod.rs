@@ -2,7 +2,9 @@
 //! `" + "`: `robot + factory-large`.
 //!
 //! Settings: `job.volume`, one of [`kinds::KINDS`]; `job.over` (`triangles`, `nodes`); `job.leaf`, triangles a leaf;
-//! `job.query` (`all`, `first`); `job.reach`, in metres; `job.place` (see [`place`]) with `job.gap`; and for each
+//! `job.query` (`all`, `first`); `job.reach`, in metres; `job.place` (see [`place`]) with `job.gap`;
+//! `job.offset`, how far along each axis both bodies are moved from the origin, in metres, and `job.scale`, how large the
+//! moving one is made, in its data; and for each
 //! scheme `tasks` (`batches`, `pairs`).
 
 mod kinds;
@@ -22,7 +24,7 @@ use crate::scheme::tree::Scheme;
 use kinds::{KINDS, Kind};
 use place::Place;
 pub(super) use stage::PairStage;
-use stage::Trees;
+use stage::{Body, Trees};
 use std::borrow::Borrow;
 use std::rc::Rc;
 use std::sync::atomic::Ordering;
@@ -43,7 +45,17 @@ struct Asked {
     leaf: usize,
     query: Query,
     place: Place,
+    data: Data,
     by_pairs: bool,
+}
+
+/// What is done to the bodies' data before anything is built over them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Data {
+    /// Along each axis, in metres.
+    offset: f32,
+    /// The moving body's size, as a share of what it was.
+    scale: f32,
 }
 
 impl Asked {
@@ -51,8 +63,13 @@ impl Asked {
         let settings = JobSettings::of(cell);
         let kinds: Vec<_> = KINDS.iter().map(|kind| (kind.name, kind)).collect();
         let gap = settings.number("gap", 0.01, 0.0..=1000.0)?;
-        let places =
-            [("here", Place::Here), ("gap", Place::Gap(gap)), ("deep", Place::Deep), ("graze", Place::Graze)];
+        let places = [
+            ("here", Place::Here),
+            ("gap", Place::Gap(gap)),
+            ("deep", Place::Deep),
+            ("graze", Place::Graze),
+            ("apart", Place::Apart),
+        ];
         let asked = Asked {
             kind: settings.choice("volume", &kinds)?,
             over: settings.choice("over", &[("triangles", Over::Triangles), ("nodes", Over::Nodes)])?,
@@ -62,6 +79,10 @@ impl Asked {
                 reach: settings.number("reach", 0.0, 0.0..=1e6)?,
             },
             place: settings.choice("place", &places)?,
+            data: Data {
+                offset: settings.number("offset", 0.0, -1e9..=1e9)? as f32,
+                scale: settings.number("scale", 1.0, 1e-9..=1e9)? as f32,
+            },
             by_pairs: settings.choice("tasks", &[("batches", false), ("pairs", true)])?,
         };
         settings.finish(cell)?;
@@ -86,14 +107,14 @@ pub(super) fn open(
         );
         return Err(MeasureError::Words(message));
     };
-    let key =
-        format!("{} {:?} {:?} {} {}", cell.scene, asked.over, asked.place, options.frames, options.seed);
+    let Asked { over, place, data, .. } = asked;
+    let key = format!("{} {over:?} {place:?} {data:?} {} {}", cell.scene, options.frames, options.seed);
     let stage = match cache.pairs.get(&key) {
         Some(stage) => stage.clone(),
         None => {
-            let (mover, other) = (super::scene(mover)?, super::scene(other)?);
-            let frames = options.frames as usize;
-            let stage = PairStage::new(mover, other, asked.over, asked.place, frames, options.seed)?;
+            let mover = Body::new(super::scene(mover)?, data.scale, data.offset);
+            let other = Body::new(super::scene(other)?, 1.0, data.offset);
+            let stage = PairStage::new(mover, other, over, place, options.frames as usize, options.seed)?;
             let stage = Rc::new(stage);
             cache.pairs.insert(key, stage.clone());
             stage

@@ -2,6 +2,7 @@
 //!
 //! - `here`: where its scene has it.
 //! - `gap`: beside the other along x, nearer by nothing than `job.gap` times the other's longest side.
+//! - `apart`: where its scene has it, if nothing touches there; else beside the other with a gap of 0.1 %.
 //! - `deep`: within the other without touching, where the descent is longest among places tried at random
 //!   (P2-21: "spatially placed such that the algorithm is forced to traverse deep down in both trees").
 //! - `graze`: it slides along the other past a touch, a thousandth of its side away, and then into it.
@@ -19,6 +20,7 @@ use glam::{DQuat, DVec3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Place {
     Here,
+    Apart,
     Gap(f64),
     Deep,
     Graze,
@@ -47,6 +49,17 @@ pub(super) fn poses(
     Ok(match place {
         Place::Here => vec![Rigid::IDENTITY; frames],
         Place::Gap(gap) => vec![beside(mover, other, DQuat::IDENTITY, gap)?; frames],
+        Place::Apart => {
+            let (moved, fixed) =
+                (mover.tree::<Obb>(Over::Triangles, LEAF)?, other.tree::<Obb>(Over::Triangles, LEAF)?);
+            let here = contacts(&fixed, &moved, &Rigid::IDENTITY, Query { first: true, reach: 0.0 });
+            let pose = if here.pairs.is_empty() {
+                Rigid::IDENTITY
+            } else {
+                beside(mover, other, DQuat::IDENTITY, GRAZE)?
+            };
+            vec![pose; frames]
+        }
         Place::Deep => vec![deep(mover, other, over, seed)?; frames],
         Place::Graze => {
             let side = longest(other);

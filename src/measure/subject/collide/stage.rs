@@ -8,7 +8,7 @@ use crate::measure::MeasureError;
 use crate::scene::Scene;
 use crate::structure::VolumeTree;
 use crate::structure::volume_tree::in_world;
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 use std::any::Any;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -30,7 +30,13 @@ pub(super) struct Body {
 }
 
 impl Body {
-    fn new(scene: Scene) -> Self {
+    /// A scene, made larger or smaller and put elsewhere: all of its roots are.
+    pub(super) fn new(mut scene: Scene, scale: f32, offset: f32) -> Self {
+        let put = Affine3A::from_translation(Vec3::splat(offset)) * Affine3A::from_scale(Vec3::splat(scale));
+        for &root in &scene.roots {
+            let transform = &mut scene.nodes[root as usize].transform;
+            *transform = put * *transform;
+        }
         let (positions, triangles) = in_world(&scene);
         Self { scene, positions, triangles }
     }
@@ -64,14 +70,13 @@ pub(in crate::measure::subject) struct PairStage {
 
 impl PairStage {
     pub(super) fn new(
-        mover: Scene,
-        other: Scene,
+        mover: Body,
+        other: Body,
         over: Over,
         place: Place,
         frames: usize,
         seed: u64,
     ) -> Result<Self, MeasureError> {
-        let (mover, other) = (Body::new(mover), Body::new(other));
         for body in [&mover, &other] {
             if body.triangles.is_empty() {
                 return Err(MeasureError::Failed(format!("scene `{}` has no triangles", body.scene.name)));

@@ -14,10 +14,8 @@ pub struct Costs {
 pub struct Times {
     /// A pair of boxes tested by itself, with its visit.
     pub pair: f64,
-    /// A visit that tests boxes eight at a time, but for the tests.
-    pub visit: f64,
-    /// One of the boxes tested so.
-    pub batched: f64,
+    /// A block of eight boxes tested, with its share of the visit.
+    pub batch: f64,
     /// A pair of triangles.
     pub triangles: f64,
 }
@@ -27,23 +25,16 @@ impl Costs {
     /// is between the two machines, clock and instructions a cycle.
     pub fn measured_on(model: &Model, times: Times) -> Self {
         let scale = model.cycles_per_measured_ns;
-        let Times { pair, visit, batched, triangles } = times;
-        Costs {
-            times: Times {
-                pair: pair * scale,
-                visit: visit * scale,
-                batched: batched * scale,
-                triangles: triangles * scale,
-            },
-        }
+        let Times { pair, batch, triangles } = times;
+        Costs { times: Times { pair: pair * scale, batch: batch * scale, triangles: triangles * scale } }
     }
 
     pub(super) fn pair(&self) -> u64 {
         self.times.pair.round() as u64
     }
 
-    pub(super) fn boxes(&self, tested: u32) -> u64 {
-        (self.times.visit + self.times.batched * f64::from(tested)).round() as u64
+    pub(super) fn batch(&self) -> u64 {
+        self.times.batch.round() as u64
     }
 
     pub(super) fn triangles(&self) -> u64 {

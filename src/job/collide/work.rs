@@ -138,7 +138,7 @@ impl<'a, W: Word, V: Overlap> BatchWork<'a, W, V> {
                 }
                 cpu.touch(&pair.b.blocks[block as usize]);
                 found.box_tests += u64::from(later.count_ones());
-                cpu.charge(costs.boxes(later.count_ones()));
+                cpu.charge(costs.batch());
                 let near = pair.near(&pair.b.blocks[block as usize], &moved) & later;
                 lanes(block, near).for_each(|other| emit((child, other)));
             }
@@ -197,7 +197,7 @@ impl<W: Word, V: Overlap> TreeWork for BatchWork<'_, W, V> {
         };
         for (block, used) in below.blocks() {
             cpu.touch(&blocks[block as usize]);
-            cpu.charge(costs.boxes(used.count_ones()));
+            cpu.charge(costs.batch());
             found.box_tests += u64::from(used.count_ones());
             let near = pair.near(&blocks[block as usize], &moved) & used;
             lanes(block, near).for_each(|lane| emit(if first { (lane, task.1) } else { (task.0, lane) }));

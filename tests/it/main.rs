@@ -1,6 +1,7 @@
 //! One binary for all integration tests: oracles, goldens in virtual time, invariants, command line, house rules.
 
 mod advise;
+mod collide;
 mod command_line;
 mod compare;
 mod cull_moving;

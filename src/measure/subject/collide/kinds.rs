@@ -44,9 +44,9 @@ kinds! {
     "aabb" => Aabb: 12.7, 33.6;
     "aabb_as_obb" => AlignedObb: 34.2, 64.0;
     "sphere" => Sphere: 19.3, 22.9;
-    "dop14" => KDop<7>: 40.4, 52.0;
-    "dop18" => KDop<9>: 41.3, 58.7;
-    "dop26" => KDop<13>: 52.8, 51.9;
+    "14dop" => KDop<7>: 40.4, 52.0;
+    "18dop" => KDop<9>: 41.3, 58.7;
+    "26dop" => KDop<13>: 52.8, 51.9;
 }
 
 impl Kind {

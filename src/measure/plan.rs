@@ -1,11 +1,14 @@
 //! From an experiment and the words of the command line to the list of cells.
 
+mod scenes;
+
 use super::experiment::{SHARED, does_not_suit};
 use super::until::FEWEST;
 use super::{Experiment, Known, MeasureError, Until, Value, near, processor_list};
 use crate::machine::simulated::Model;
 use crate::record::{CellKey, THREADS};
-use serde::{Deserialize, Deserializer, Serialize};
+pub(super) use scenes::PAIR;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -13,9 +16,6 @@ use std::time::Duration;
 
 /// With `--quick` no more repeats than this: enough for a median.
 const QUICK_REPEATS: u32 = 3;
-
-/// What joins the names of two scenes where a job takes two.
-pub(super) const PAIR: &str = " + ";
 
 /// One scheme, with its settings, over one scene, on one machine with so many processors.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +49,7 @@ pub struct Selection {
     /// Schemes; none for the experiment's. The serial one stays, as every speedup is held against it.
     pub schemes: Vec<String>,
     /// Scenes in place of the experiment's; none for those. Where the experiment's are pairs, two make one.
-    #[serde(rename = "scene", deserialize_with = "one_or_many")]
+    #[serde(rename = "scene", deserialize_with = "scenes::one_or_many")]
     pub scenes: Vec<String>,
     /// A recorded camera path.
     pub path: Option<PathBuf>,
@@ -113,7 +113,7 @@ impl Plan {
         cores: u32,
     ) -> Result<Self, MeasureError> {
         let options = options(experiment, selection)?;
-        let scenes = scenes(experiment, selection)?;
+        let scenes = scenes::of(experiment, &selection.scenes)?;
         if scenes.is_empty() {
             return Err(MeasureError::Words(format!(
                 "experiment {} needs --scene FILE|NAME",
@@ -226,43 +226,6 @@ impl fmt::Display for Cell {
         write!(out, "{} {} on {} x {}", self.scene, self.scheme, self.machine, self.processors)?;
         if self.settings.is_empty() { Ok(()) } else { write!(out, " ({})", self.settings_text()) }
     }
-}
-
-/// None, one or several: runs of earlier versions have none or one.
-fn one_or_many<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<String>, D::Error> {
-    #[derive(Deserialize)]
-    #[serde(untagged, expecting = "expected a scene's name or a list of them")]
-    enum Scenes {
-        None(()),
-        One(String),
-        Many(Vec<String>),
-    }
-    Ok(match Scenes::deserialize(from)? {
-        Scenes::None(()) => Vec::new(),
-        Scenes::One(scene) => vec![scene],
-        Scenes::Many(scenes) => scenes,
-    })
-}
-
-/// The scenes of a run's cells: where the experiment's are pairs, those on the command line are joined two by two.
-fn scenes(experiment: &Experiment, selection: &Selection) -> Result<Vec<String>, MeasureError> {
-    let given = &selection.scenes;
-    if given.is_empty() {
-        return Ok(experiment.scenes.clone());
-    }
-    if !experiment.scenes.iter().any(|scene| scene.contains(PAIR)) {
-        return Ok(given.clone());
-    }
-    if given.iter().all(|scene| scene.contains(PAIR)) {
-        return Ok(given.clone());
-    }
-    if !given.len().is_multiple_of(2) {
-        return Err(MeasureError::Words(format!(
-            "experiment {} tests two bodies against each other: give --scene twice, the one that moves first",
-            experiment.name
-        )));
-    }
-    Ok(given.chunks(2).map(|pair| pair.join(PAIR)).collect())
 }
 
 fn is_serial(scheme: &str) -> bool {

@@ -28,7 +28,9 @@ pub(super) enum Place {
 
 /// Places tried for `deep`.
 const TRIES: usize = 4000;
-/// Halvings of the way on which a gap is looked for: to a millionth of a millionth of it.
+/// Steps on the way in to the first touch.
+const STEPS: u32 = 400;
+/// Halvings of the way on which a gap is looked for: as near as f64 can tell.
 const HALVINGS: usize = 40;
 /// How near `graze` comes, in shares of the other's longest side, and how deep it gets in the end.
 const GRAZE: f64 = 1e-3;
@@ -91,11 +93,19 @@ fn beside(mover: &Body, other: &Body, turn: DQuat, gap: f64) -> Result<Rigid, Me
     let to = other.scene.bounds().centre().as_dvec3();
     let at = |x: f64| Rigid::shift(-middle).then(&Rigid::new(turn, to + DVec3::X * x));
     let query = Query { first: true, reach: gap * side };
-    let (mut near, mut far) = (0.0, side + f64::from(own.size().length()) + gap * side);
+    let touches = |x: f64| !contacts(&fixed, &moved, &at(x), query).pairs.is_empty();
+    // From afar inward to the first step that touches: further in there may be room again.
+    let step = (side + f64::from(own.size().length()) + gap * side) / STEPS as f64;
+    let first = (1..=STEPS).rev().map(|i| step * i as f64).find(|&x| touches(x - step));
+    let Some(mut far) = first else {
+        let message =
+            format!("`{}` meets nothing of `{}` on its way in along x", mover.scene.name, other.scene.name);
+        return Err(MeasureError::Failed(message));
+    };
+    let mut near = far - step;
     for _ in 0..HALVINGS {
         let x = (near + far) / 2.0;
-        let touches = !contacts(&fixed, &moved, &at(x), query).pairs.is_empty();
-        *(if touches { &mut near } else { &mut far }) = x;
+        *(if touches(x) { &mut near } else { &mut far }) = x;
     }
     Ok(at(far))
 }

@@ -2,7 +2,8 @@
 //!
 //! Two triangles meet exactly if the origin lies in the hull of the nine differences of their corners; and if it
 //! does, it lies in the simplex of some four, three or two of them that do not lie in less, or is one of them
-//! (Caratheodory). All are tried, in integers that cannot overflow.
+//! (Caratheodory). All are tried, in integers that cannot overflow; none if all nine lie on one side of the origin
+//! along a coordinate, which is what is seen of most pairs that are apart.
 
 /// A corner on a grid; each coordinate at most 2^19 in size.
 pub type GridPoint = [i32; 3];
@@ -18,6 +19,10 @@ pub fn triangles_meet(a: &[GridPoint; 3], b: &[GridPoint; 3]) -> bool {
         .iter()
         .flat_map(|p| b.iter().map(|q| [0, 1, 2].map(|k| i128::from(p[k]) - i128::from(q[k]))))
         .collect();
+    let beside = |k: usize| all.iter().all(|at| at[k] > 0) || all.iter().all(|at| at[k] < 0);
+    if (0..3).any(beside) {
+        return false;
+    }
     let n = all.len();
     (0..n).any(|i| {
         all[i] == [0; 3]

@@ -158,8 +158,8 @@ fn every_experiment_parses_and_can_be_planned() {
     assert!(shelf.names().count() > 0);
     for name in shelf.names() {
         let experiment = shelf.load(name, &known).unwrap_or_else(|error| panic!("{error}"));
-        let scene = experiment.scenes.is_empty().then(|| "scene.glb".to_owned());
-        let selection = apportion::measure::Selection { scene, ..Default::default() };
+        let scenes = if experiment.scenes.is_empty() { vec!["scene.glb".to_owned()] } else { Vec::new() };
+        let selection = apportion::measure::Selection { scenes, ..Default::default() };
         let plan = apportion::measure::Plan::new(&experiment, &selection, &known, 2);
         plan.unwrap_or_else(|error| panic!("{name}: {error}"));
     }

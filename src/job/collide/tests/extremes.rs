@@ -47,7 +47,7 @@ fn held<V: Overlap>(a: &Mesh, b: &Mesh, motion: &Rigid, reach: f64) -> Result<()
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 3_000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 1_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn nothing_is_missed_of_any_size_anywhere(

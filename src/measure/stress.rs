@@ -1,12 +1,14 @@
-//! Schemes and primitives under random load on real threads, and culling tests under random volumes, with their
-//! invariants checked run by run.
+//! Schemes and primitives under random load on real threads, and the tests of culling and collision under random
+//! volumes and triangles, with their invariants checked run by run.
 //!
 //! Tiny queues, random pauses and more workers than cores bring about the interleavings that ordinary
 //! runs seldom see. A schedule of real threads cannot be repeated, but what was asked of it can: each
 //! run has a seed. A run that never ends shows in a progress that stops.
 
+mod contacts;
 mod cull_kernels;
 mod cull_tests;
+mod overlaps;
 mod primitives;
 mod tiles;
 mod trees;
@@ -23,6 +25,8 @@ const PRIMITIVES: &[(&str, primitives::Check)] = &[
     ("quiescence", primitives::quiescence),
     ("cull_tests", cull_tests::check),
     ("cull_kernels", cull_kernels::check),
+    ("contacts", contacts::check),
+    ("overlaps", overlaps::check),
 ];
 
 /// What was run, and what went wrong.
@@ -30,7 +34,8 @@ const PRIMITIVES: &[(&str, primitives::Check)] = &[
 pub struct StressReport {
     /// Runs made.
     pub runs: u64,
-    /// Nodes visited, tasks passed on, turns taken, boxes tested, or verdicts given in these runs.
+    /// Nodes visited, tasks passed on, turns taken, boxes tested, verdicts given, or pairs tried in these
+    /// runs.
     pub nodes: u64,
     /// Invariants found broken. Stressing ends at the first of them.
     pub violations: Vec<Violation>,

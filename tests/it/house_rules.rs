@@ -158,7 +158,7 @@ fn every_experiment_parses_and_can_be_planned() {
     assert!(shelf.names().count() > 0);
     for name in shelf.names() {
         let experiment = shelf.load(name, &known).unwrap_or_else(|error| panic!("{error}"));
-        let scenes = experiment.scenes.is_empty().then(|| "scene.glb".to_owned()).into_iter().collect();
+        let scenes = if experiment.scenes.is_empty() { vec!["scene.glb".to_owned()] } else { Vec::new() };
         let selection = apportion::measure::Selection { scenes, ..Default::default() };
         let plan = apportion::measure::Plan::new(&experiment, &selection, &known, 2);
         plan.unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -23,11 +23,13 @@ pub(crate) enum Mutant {
     LostHead,
     /// Stores of `u64::MAX` are lost during a run: `Quiescence::leave` does nothing.
     NeverBusy,
+    /// Not the machine but the work: a query says that it is over before its contact is found.
+    HastyStop,
 }
 
 impl Mutant {
     /// Every one of them.
-    pub(crate) const ALL: [Mutant; 8] = [
+    pub(crate) const ALL: [Mutant; 9] = [
         Mutant::Relaxed,
         Mutant::NoFence,
         Mutant::Torn,
@@ -36,6 +38,7 @@ impl Mutant {
         Mutant::NoWait,
         Mutant::LostHead,
         Mutant::NeverBusy,
+        Mutant::HastyStop,
     ];
 }
 

@@ -55,7 +55,7 @@ impl TreeWork for Nodes {
 }
 
 /// One setting to add to the smallest capacity; the ones a scheme does not know are left out.
-type Extra = Option<(&'static str, &'static str)>;
+pub(crate) type Extra = Option<(&'static str, &'static str)>;
 
 const EXTRAS: [Extra; 13] = [
     None,
@@ -74,7 +74,7 @@ const EXTRAS: [Extra; 13] = [
 ];
 
 /// A scheme set up with small rooms; none if it does not know the extra setting.
-fn set_up(name: &str, machine: &Loom, extra: Extra) -> Option<Scheme<Loom>> {
+pub(crate) fn set_up(name: &str, machine: &Loom, extra: Extra) -> Option<Scheme<Loom>> {
     let extra: Vec<(&str, &str)> = extra.into_iter().collect();
     for small in [&[("capacity", "1")][..], &[]] {
         let pairs = small.iter().chain(&extra).map(|(k, v)| ((*k).to_owned(), (*v).to_owned()));

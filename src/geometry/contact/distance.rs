@@ -1,19 +1,27 @@
 //! How near triangles come to each other, in f64.
 
-use super::{Triangle, edges, meet};
+use super::{Triangle, are_finite, edges, further, meet};
 use glam::DVec3;
 
 /// Whether two triangles come nearer than `distance`, in metres, or as near; what is within the rounding of f64 of
-/// it may be told either way, for 0 the answer is that of [`meet`].
+/// it may be told either way, for 0 and below the answer is that of [`meet`]. If the distance or a coordinate is not a
+/// number nobody knows, and the answer is yes.
 pub fn closer(a: &Triangle, b: &Triangle, distance: f64) -> bool {
     if distance <= 0.0 {
         return meet(a, b);
+    }
+    if distance.is_nan() || !are_finite(a, b) {
+        return true;
+    }
+    if further(a, b, distance) {
+        return false;
     }
     let limit = distance * distance;
     // The nearest points lie on two edges, or a corner and a face; or the triangles meet.
     edges(a).any(|s| edges(b).any(|t| between_segments(s, t) <= limit))
         || b.iter().any(|corner| from_triangle(*corner, a) <= limit)
         || a.iter().any(|corner| from_triangle(*corner, b) <= limit)
+        || distance == f64::INFINITY
         || meet(a, b)
 }
 
@@ -21,9 +29,11 @@ pub fn closer(a: &Triangle, b: &Triangle, distance: f64) -> bool {
 fn between_segments([p, p1]: [DVec3; 2], [q, q1]: [DVec3; 2]) -> f64 {
     let (u, v, w) = (p1 - p, q1 - q, p - q);
     let (uu, uv, vv, uw, vw) = (u.dot(u), u.dot(v), v.dot(v), u.dot(w), v.dot(w));
+    // Across both; not by `uu * vv - uv * uv`, of which little is left where they are all but parallel.
+    let across = u.cross(v);
     let share = |over: f64, under: f64| if under > 0.0 { (over / under).clamp(0.0, 1.0) } else { 0.0 };
     // Nearest on the first to the line of the second, then on the second to that, then back again.
-    let s = share(uv * vw - vv * uw, uu * vv - uv * uv);
+    let s = share(across.cross(v).dot(w), across.length_squared());
     let t = share(vw + s * uv, vv);
     let s = share(t * uv - uw, uu);
     let t = share(vw + s * uv, vv);
@@ -74,6 +84,23 @@ mod tests {
                 !closer(&a, &b, (near - 0.2).max(0.0)) || meet(&a, &b) || near < 0.2,
                 "{a:?} {b:?} {near}"
             );
+        }
+    }
+
+    /// Two edges that cross at a height, all but parallel: no products of four lengths tell where.
+    #[test]
+    fn needles_that_are_all_but_parallel() {
+        for slope in [1e-3, 1e-6, 1e-8, 1e-9] {
+            let height = slope * 0.01;
+            let turn = glam::DQuat::from_axis_angle(DVec3::new(0.3, -0.8, 0.5).normalize(), 0.7);
+            let put = |x: f64, y: f64, z: f64| turn * DVec3::new(x, y, z);
+            let across = |x: f64| put(x, slope * (x - 0.3), height);
+            let (a, b) =
+                ([put(-1.0, 0.0, 0.0), put(0.1, 0.0, 0.0), put(1.7, 0.0, 0.0)], [-1.2, 0.9, 0.2].map(across));
+            // What is lost in writing the corners down.
+            let slop = 1e-15;
+            assert!(closer(&a, &b, height + slop), "{slope}");
+            assert!(!closer(&a, &b, height - slop), "{slope}");
         }
     }
 

@@ -15,8 +15,8 @@ use segment::segment_meets;
 /// A triangle by its corners, in metres.
 pub type Triangle = [DVec3; 3];
 
-/// Whether two triangles have a point in common: exactly, for coordinates that are finite and between 1e-70 and
-/// 1e70 in size, or zero. If one is not a number nobody knows, and the answer is yes.
+/// Whether two triangles have a point in common: exactly, for coordinates that are between 1e-70 and 1e70 in size, or
+/// zero. If one is larger the boxes around them decide; if one is not a number nobody knows, and the answer is yes.
 ///
 /// ```
 /// use apportion::geometry::contact::meet;
@@ -30,11 +30,25 @@ pub fn meet(a: &Triangle, b: &Triangle) -> bool {
     if beside(a, b) || beside(b, a) {
         return false;
     }
-    if a.iter().chain(b).any(|corner| !corner.is_finite()) {
-        return true;
+    if a.iter().chain(b).any(|corner| !corner.abs().cmple(DVec3::splat(LARGEST)).all()) {
+        return !are_finite(a, b) || !further(a, b, 0.0);
     }
     // Two closed triangles meet exactly if an edge of one meets the other.
     edges(a).any(|edge| segment_meets(edge, b)) || edges(b).any(|edge| segment_meets(edge, a))
+}
+
+/// The largest coordinate whose products with two others, and what they are rounded by, f64 can hold.
+const LARGEST: f64 = 1e70;
+
+fn are_finite(a: &Triangle, b: &Triangle) -> bool {
+    a.iter().chain(b).all(|corner| corner.is_finite())
+}
+
+/// Whether the boxes around two triangles, whose coordinates are finite, are further apart than a distance, in metres.
+fn further(a: &Triangle, b: &Triangle, distance: f64) -> bool {
+    let ends = |[p, q, r]: Triangle| (p.min(q).min(r), p.max(q).max(r));
+    let ((a_low, a_high), (b_low, b_high)) = (ends(*a), ends(*b));
+    (b_low - a_high).max(a_low - b_high).cmpgt(DVec3::splat(distance)).any()
 }
 
 pub use distance::closer;

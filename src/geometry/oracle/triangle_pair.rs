@@ -2,7 +2,8 @@
 //!
 //! Two triangles meet exactly if the origin lies in the hull of the nine differences of their corners; and if it
 //! does, it lies in the simplex of some four, three or two of them that do not lie in less, or is one of them
-//! (Caratheodory). All are tried, in integers that cannot overflow.
+//! (Caratheodory). All are tried, in integers that cannot overflow; none if some direction is seen along which all nine
+//! lie on one side of the origin, which whatever direction it is shows that they do not surround it.
 
 /// A corner on a grid; each coordinate at most 2^19 in size.
 pub type GridPoint = [i32; 3];
@@ -18,6 +19,13 @@ pub fn triangles_meet(a: &[GridPoint; 3], b: &[GridPoint; 3]) -> bool {
         .iter()
         .flat_map(|p| b.iter().map(|q| [0, 1, 2].map(|k| i128::from(p[k]) - i128::from(q[k]))))
         .collect();
+    let beside = |way: [i128; 3]| {
+        let side = dot(way, all[0]).signum();
+        side != 0 && all.iter().all(|at| dot(way, *at).signum() == side)
+    };
+    if [[1, 0, 0], [0, 1, 0], [0, 0, 1]].into_iter().chain(likely(a, b)).any(beside) {
+        return false;
+    }
     let n = all.len();
     (0..n).any(|i| {
         all[i] == [0; 3]
@@ -29,6 +37,17 @@ pub fn triangles_meet(a: &[GridPoint; 3], b: &[GridPoint; 3]) -> bool {
                     })
             })
     })
+}
+
+/// Directions along which most that are apart are seen to be: across the planes of both, and across pairs of edges.
+fn likely(a: &[GridPoint; 3], b: &[GridPoint; 3]) -> impl Iterator<Item = [i128; 3]> {
+    let edges = |t: &[GridPoint; 3]| {
+        let t = t.map(|corner| corner.map(i128::from));
+        [sub(t[1], t[0]), sub(t[2], t[1]), sub(t[0], t[2])]
+    };
+    let (a, b) = (edges(a), edges(b));
+    let planes = [cross(a[0], a[1]), cross(b[0], b[1])];
+    planes.into_iter().chain(a.into_iter().flat_map(move |s| b.map(|t| cross(s, t))))
 }
 
 fn cross(a: [i128; 3], b: [i128; 3]) -> [i128; 3] {

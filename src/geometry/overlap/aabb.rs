@@ -33,6 +33,10 @@ impl Overlap for Aabb {
     type Eight = Columns<NUMBERS>;
 
     fn around(points: &[Vec3]) -> Self {
+        // The least of a number and a NaN is the number: the box would leave out what nobody knows the place of.
+        if points.iter().any(|point| point.is_nan()) {
+            return Self { min: Vec3::NAN, max: Vec3::NAN };
+        }
         Self::of_points(points.iter().copied())
     }
 

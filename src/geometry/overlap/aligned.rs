@@ -14,7 +14,7 @@ impl Overlap for AlignedObb {
     type Eight = Columns<{ obb::NUMBERS }>;
 
     fn around(points: &[Vec3]) -> Self {
-        Self(Obb::from(Aabb::of_points(points.iter().copied())))
+        Self(Obb::from(Aabb::around(points)))
     }
 
     fn surface(&self) -> f32 {

@@ -28,7 +28,7 @@ pub trait Overlap: Copy + std::fmt::Debug + Send + Sync + 'static {
     /// Eight volumes, number beside number.
     type Eight: Eight<Self>;
 
-    /// A small volume around some points.
+    /// A small volume around some points; one that is apart from nothing if a number in them is NaN.
     fn around(points: &[Vec3]) -> Self;
 
     /// Its surface or what stands for it, in square metres: of a pair the larger is descended.
@@ -71,8 +71,11 @@ pub struct Way {
 const ROUNDING: f32 = 32.0 * f32::EPSILON / 2.0;
 
 impl Way {
-    /// A motion for tests whether volumes come nearer than `reach`, in metres, not less than 0.
+    /// A motion for tests whether volumes come nearer than `reach`, in metres. A reach below 0 is one of 0; of one that
+    /// is not a number, or a motion that has such, nobody knows, and nothing is apart.
     pub fn new(motion: &Rigid, reach: f64) -> Self {
+        // Not by `max`, which would make 0 of what is not a number.
+        let reach = if reach < 0.0 { 0.0 } else { reach };
         let rotation = motion.rotation();
         let translation = motion.translation().as_vec3a();
         let shift = translation.abs().element_sum();
@@ -84,6 +87,11 @@ impl Way {
             // Below it is what is lost by writing the numbers in f32, far below.
             reach: (reach as f32) * (1.0 + ROUNDING) + shift * ROUNDING + f32::MIN_POSITIVE,
         }
+    }
+
+    /// The same way, which may be off by so many metres.
+    pub(crate) fn off_by(self, metres: f64) -> Self {
+        Self { reach: self.reach + (metres as f32) * (1.0 + ROUNDING), ..self }
     }
 
     /// Where a point goes.

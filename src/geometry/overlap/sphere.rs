@@ -13,6 +13,10 @@ pub struct MovedSphere {
     radius: f32,
 }
 
+/// What is added to a reach, in metres, so that its square is no number whose last places f32 has lost: of smaller
+/// spheres the rounding of the squares would decide.
+const LEAST: f32 = 1e-16;
+
 /// The numbers of a sphere: its centre and its radius.
 const NUMBERS: usize = 4;
 
@@ -30,7 +34,7 @@ impl Overlap for Sphere {
 
     #[inline]
     fn moved(&self, way: &Way) -> MovedSphere {
-        let radius = self.radius + way.slack(self.centre, self.radius);
+        let radius = self.radius + way.slack(self.centre, self.radius) + LEAST;
         MovedSphere { centre: way.point(self.centre).to_array(), radius }
     }
 
@@ -91,7 +95,7 @@ unsafe fn separated<L: Lanes>(moved: &MovedSphere, numbers: &[L; NUMBERS]) -> u6
         let radius = numbers[3];
         let slack = size.add(radius).mul(L::splat(ROUNDING));
         let reach = radius.add(L::splat(moved.radius)).add(slack);
-        // A square that overflowed says nothing; one below the least number was no distance to speak of.
+        // A square that overflowed says nothing.
         squared.greater(reach.mul(reach)) & L::splat(f32::INFINITY).greater(squared)
     }
 }

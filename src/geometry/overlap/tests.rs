@@ -125,6 +125,14 @@ fn huge_ones_and_no_numbers_are_not_apart() {
     assert!(!apart(&huge, &huge, &way));
     let odd = Obb::tight(&[Vec3::NAN]);
     assert!(!apart(&odd, &Obb::tight(&[Vec3::ONE]), &way));
+    assert!(!apart(&Aabb::around(&[Vec3::NAN, Vec3::X]), &Aabb::around(&[Vec3::ONE]), &way));
+    assert!(!apart(&AlignedObb::around(&[Vec3::NAN, Vec3::X]), &AlignedObb::around(&[Vec3::ONE]), &way));
+    // Squares of which f32 keeps a bit or none.
+    for size in [1e-19, 3e-22, 1.1e-23, 1e-40] {
+        let (one, other) = (Vec3::new(1.0, 0.7, -0.9) * size, Vec3::new(-0.8, 1.0, 0.6) * size);
+        let [a, b] = [[Vec3::ZERO, one], [one, one + other]].map(|points| Sphere::of_points(&points));
+        assert!(!apart(&a, &b, &Way::new(&Rigid::IDENTITY, 0.0)), "{size}");
+    }
     let unit = Sphere::of_points(&[Vec3::ZERO, Vec3::X]);
     assert!(!apart(&Sphere::of_points(&[Vec3::splat(3e38)]), &unit, &way));
 }

@@ -39,7 +39,7 @@ pub use work::{BatchWork, Found, PairWork};
 pub struct Query {
     /// Whether any one contact will do: the query ends when one is found.
     pub first: bool,
-    /// Contacts are triangles that come nearer than this, in metres; 0 for those that touch.
+    /// Contacts are triangles that come nearer than this, in metres; 0, and what is below, for those that touch.
     pub reach: f64,
 }
 
@@ -72,6 +72,10 @@ impl Contacts {
 }
 
 /// The contacts of two bodies, the second moved, on this thread.
+///
+/// Nothing is missed for numbers that say nothing: where the motion has one that is NaN or infinite, nobody knows where
+/// the second body is, and with a reach that is NaN, what is near; every pair is then a contact. That is as many as the
+/// bodies' triangles multiplied: ask [`Rigid::is_finite`] first if a motion may be such.
 pub fn contacts<V: Overlap>(a: &VolumeTree<V>, b: &VolumeTree<V>, motion: &Rigid, query: Query) -> Contacts {
     let pair = Pair::new(a, b, motion, query.reach, Unit::best());
     on_this_thread(&pair, query)

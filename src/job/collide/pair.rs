@@ -77,7 +77,16 @@ impl<'a, V: Overlap> Pair<'a, V> {
         reach: f64,
         unit: Unit,
     ) -> Self {
-        Self { a, b, motion: *motion, a_to_b, b_to_a, reach: reach.max(0.0), unit, own: false }
+        Self {
+            a,
+            b,
+            motion: *motion,
+            a_to_b,
+            b_to_a,
+            reach: if reach < 0.0 { 0.0 } else { reach },
+            unit,
+            own: false,
+        }
     }
 
     /// Whether two boxes are certainly apart: one test.

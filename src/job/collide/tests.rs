@@ -8,6 +8,8 @@ use crate::machine::{Layout, Simulated};
 use crate::scheme::tree::share;
 use glam::{DQuat, DVec3, Vec3};
 
+mod extremes;
+
 type Mesh = (Vec<Vec3>, Vec<[u32; 3]>);
 
 /// A ball of triangles, open at the poles, with bumps.

@@ -64,11 +64,16 @@ impl<W: Word, V: Overlap> Common<'_, W, V> {
         let items = |link: Link| link.first..link.first + link.count();
         let number = |order: &[u32], place: u32| order[place as usize];
         if pair.a.triangles.is_empty() || pair.b.triangles.is_empty() {
-            // Of scene nodes no more is known than their boxes (Paper II sec. 5).
+            // Of scene nodes no more is known than their boxes (Paper II sec. 5). One is not its own contact.
+            let before = found.pairs.len();
             for i in items(a) {
-                found.pairs.extend(items(b).map(|j| (number(pair.a.order, i), number(pair.b.order, j))));
+                let others = items(b).filter(|&j| !(pair.own && same && i >= j));
+                found.pairs.extend(others.map(|j| (number(pair.a.order, i), number(pair.b.order, j))));
             }
-            return self.found_one();
+            if found.pairs.len() > before {
+                self.found_one();
+            }
+            return;
         }
         items(a).for_each(|i| cpu.touch(&pair.a.triangles[i as usize]));
         let before = found.pairs.len();

@@ -15,13 +15,16 @@ mod triangles;
 pub use triangles::in_world;
 
 use crate::geometry::overlap::{Eight, Way};
-use crate::geometry::{Aabb, Overlap, Rigid};
+use crate::geometry::{Aabb, Overlap, Rigid, Volume};
 use crate::structure::TreeError;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
 /// Boxes in a block.
 pub const BLOCK: usize = 8;
+
+/// How many levels of boxes are fitted to every point of a body, if each holds all of them.
+const LEVELS: usize = 64;
 
 /// Where a box leads to, and how large it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,7 +192,10 @@ impl<V: Overlap> VolumeTree<V> {
     /// nearer than `reach`, in metres.
     pub fn way_to<W: Overlap>(&self, other: &VolumeTree<W>, motion: &Rigid, reach: f64) -> Way {
         let here = Rigid::shift(self.origin).then(motion);
-        Way::new(&here.then(&Rigid::shift(-other.origin)), reach)
+        // What cancels out was rounded when it was large: here, in the way back, and where triangles are moved.
+        let large = self.origin.abs() + motion.translation().abs() + other.origin.abs();
+        let lost = large.element_sum() * (16.0 * f64::EPSILON);
+        Way::new(&here.then(&Rigid::shift(-other.origin)), reach).off_by(lost)
     }
 
     /// All points, relative to the origin, in the order of the items.
@@ -210,15 +216,53 @@ impl<V: Overlap> VolumeTree<V> {
         at(first)..at(end)
     }
 
+    /// The aligned box around the items of every box, from the leaves up: boxes below come after.
+    fn bounds(&self, points: &[Vec3]) -> Vec<Aabb> {
+        let mut bounds = vec![Aabb::EMPTY; self.links.len()];
+        for i in (0..self.links.len()).rev().filter(|&i| self.links[i].is_used()) {
+            let link = self.links[i];
+            bounds[i] = if link.is_leaf() {
+                Aabb::around(&points[self.points_of(self.items[i])])
+            } else {
+                let below = &bounds[link.first as usize..(link.first + link.count()) as usize];
+                let odd = below.iter().find(|bounds| bounds.is_nan());
+                odd.copied().unwrap_or_else(|| below.iter().copied().fold(Aabb::EMPTY, Aabb::union))
+            };
+        }
+        bounds
+    }
+
+    /// How many points a box may have to be fitted to each of them.
+    ///
+    /// All boxes of a tree that is not deep. In a chain of nodes every point lies in every box above it, and to fit
+    /// them all would take time with the square of the depth; the largest must do with the box around them.
+    fn most_points(&self, points: usize) -> usize {
+        let used = self.items.iter().zip(&self.links).filter(|(_, link)| link.is_used());
+        let mut counts: Vec<usize> = used.map(|(&items, _)| self.points_of(items).len()).collect();
+        counts.sort_unstable();
+        let mut left = points.saturating_mul(LEVELS);
+        let within = counts.iter().take_while(|&&count| {
+            let fits = count <= left;
+            left = left.saturating_sub(count);
+            fits
+        });
+        within.last().copied().unwrap_or(0)
+    }
+
     /// Puts a volume around the items of every box.
     fn fit(&mut self) {
         let points = self.local_points();
-        let around = |range| V::around(&points[self.points_of(range)]);
-        let Some(&all) = self.items.first() else { return };
-        let root = around(all);
-        let boxes = self.items.iter().zip(&self.links);
-        self.volumes =
-            boxes.map(|(&range, link)| if link.is_used() { around(range) } else { root }).collect();
+        let (bounds, most) = (self.bounds(&points), self.most_points(points.len()));
+        let around = |i: usize| {
+            let own = self.points_of(self.items[i]);
+            if own.len() <= most { V::around(&points[own]) } else { V::around(&bounds[i].corners()) }
+        };
+        if self.is_empty() {
+            return;
+        }
+        let root = around(0);
+        let boxes = self.links.iter().enumerate();
+        self.volumes = boxes.map(|(i, link)| if link.is_used() { around(i) } else { root }).collect();
         self.blocks = vec![V::Eight::UNUSED; self.links.len() / BLOCK];
         for (i, (volume, link)) in self.volumes.iter().zip(&mut self.links).enumerate() {
             if link.is_used() {
@@ -233,7 +277,7 @@ impl<V: Overlap> VolumeTree<V> {
         let used = || (0..self.links.len()).filter(|&i| self.links[i].is_used());
         let mut depths = vec![0; self.links.len()];
         let (mut depth, mut own, mut aligned) = (0, 0.0, 0.0);
-        let points = self.local_points();
+        let bounds = self.bounds(&self.local_points());
         for i in used() {
             depths[i] = depths[i].max(1);
             depth = depth.max(depths[i]);
@@ -242,9 +286,8 @@ impl<V: Overlap> VolumeTree<V> {
                 (link.first..link.first + link.count())
                     .for_each(|below| depths[below as usize] = depths[i] + 1);
             }
-            let points = &points[self.points_of(self.items[i])];
             own += f64::from(link.surface);
-            aligned += f64::from(Overlap::surface(&Aabb::of_points(points.iter().copied())));
+            aligned += f64::from(Overlap::surface(&bounds[i]));
         }
         VolumeTreeStatistics {
             boxes: used().count(),

@@ -63,7 +63,7 @@ impl Obb {
     /// A small box around some points: the one with the least surface among those with the axes of the
     /// world, the axes of the points' covariance, and others offered. Empty if there are none.
     pub fn of_points(points: &[Vec3], offered: &[[Vec3; 3]]) -> Self {
-        let spread = [principal_axes(points)];
+        let spread = [principal_axes(points.iter().copied())];
         let frames = [Vec3::AXES].into_iter().chain(spread).chain(offered.iter().copied());
         let boxes = frames.filter_map(|axes| Self::with_axes(axes, points));
         boxes.min_by(|a, b| a.surface().total_cmp(&b.surface())).unwrap_or(Self::EMPTY)
@@ -75,8 +75,8 @@ impl Obb {
     /// rounding. Empty if there are none.
     pub fn tight(points: &[Vec3]) -> Self {
         // Many points are sampled: their covariance is but one offer.
-        let sample: Vec<Vec3> = points.iter().step_by(points.len() / SAMPLE + 1).copied().collect();
-        extremes::axes(points, principal_axes(&sample))
+        let sample = points.iter().step_by(points.len() / SAMPLE + 1).copied();
+        extremes::axes(points, principal_axes(sample))
             .into_iter()
             .find_map(|axes| Self::with_axes(axes, points))
             .unwrap_or(Self::EMPTY)
@@ -126,9 +126,9 @@ impl From<Aabb> for Obb {
 
 /// The axes of some points' covariance: the eigenvectors of a symmetric matrix, by Jacobi's rotations. Those
 /// of the world if there are no points to speak of.
-fn principal_axes(points: &[Vec3]) -> [Vec3; 3] {
+fn principal_axes(points: impl ExactSizeIterator<Item = Vec3> + Clone) -> [Vec3; 3] {
     let count = points.len().max(1) as f64;
-    let mean = points.iter().map(|point| point.as_dvec3()).sum::<DVec3>() / count;
+    let mean = points.clone().map(Vec3::as_dvec3).sum::<DVec3>() / count;
     // On the diagonal, and off it.
     let (mut squares, mut products) = (DVec3::ZERO, DVec3::ZERO);
     for point in points {
@@ -167,9 +167,10 @@ fn principal_axes(points: &[Vec3]) -> [Vec3; 3] {
     axes.map(DVec3::as_vec3)
 }
 
-/// Whether a matrix' cell is nothing beside the diagonal.
+/// Whether a matrix' cell is nothing beside the diagonal: the axes are f32, and the turns keep them at right angles
+/// whatever is left.
 fn is_zero(matrix: &[[f64; 3]; 3], p: usize, q: usize) -> bool {
-    matrix[p][q].abs() <= 1e-15 * (matrix[p][p] + matrix[q][q])
+    matrix[p][q].abs() <= 1e-8 * (matrix[p][p] + matrix[q][q])
 }
 
 /// An oriented box relative to the eye.

@@ -101,7 +101,7 @@ pub(super) fn check(question: &Question) -> Pairs {
 }
 
 /// Parry's pairs of triangles that touch, one after the other.
-fn touching(a: &TriMesh, b: &TriMesh, shift: &Pose) -> impl Iterator<Item = (u32, u32)> {
+fn touching<'a>(a: &'a TriMesh, b: &'a TriMesh, shift: &Pose) -> impl Iterator<Item = (u32, u32)> + use<'a> {
     let (by, shift) = (shift.translation, *shift);
     let near = move |a: &BvhNode, b: &BvhNode| {
         a.mins().cmple(b.maxs() + by).all() && (b.mins() + by).cmple(a.maxs()).all()

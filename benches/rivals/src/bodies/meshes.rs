@@ -47,7 +47,7 @@ pub(super) fn of_scene(name: &str) -> Mesh {
 pub(super) fn bumpy_ball() -> Mesh {
     let mut ball = of_scene("shell");
     for position in &mut ball.positions {
-        let Vec3 { x, y, z } = *position;
+        let [x, y, z]: [f32; 3] = position.to_array();
         *position *= 1.0 + 0.15 * (5.0 * x + 1.0).sin() * (4.0 * y + 2.0).sin() * (6.0 * z + 0.5).cos();
     }
     ball.name = "the bumpy ball".to_owned();

@@ -59,13 +59,17 @@ pub(super) struct Trees<V: Overlap> {
     pub(super) tightness: f64,
 }
 
+/// The contacts of a frame.
+type Answer = Rc<Vec<(u32, u32)>>;
+
 /// A body that moves, another that stands, and where the first is in each frame.
 pub(in crate::measure::subject) struct PairStage {
     mover: Body,
     other: Body,
     pub(super) poses: Vec<Rigid>,
     trees: RefCell<HashMap<String, Rc<dyn Any>>>,
-    answers: RefCell<HashMap<(usize, u64), Rc<Vec<(u32, u32)>>>>,
+    /// By frame, and reach as bits.
+    answers: RefCell<HashMap<(usize, u64), Answer>>,
 }
 
 impl PairStage {
@@ -87,6 +91,7 @@ impl PairStage {
     }
 
     /// The trees of a kind, built when they are first asked for.
+    #[expect(clippy::disallowed_methods, reason = "how fast trees are built is told by the real clock")]
     pub(super) fn trees<V: Overlap>(
         &self,
         kind: &str,
@@ -126,7 +131,7 @@ impl PairStage {
     }
 
     /// The contacts of the triangles in a frame, found by trees of spheres.
-    pub(super) fn answer(&self, frame: usize, reach: f64) -> Result<Rc<Vec<(u32, u32)>>, MeasureError> {
+    pub(super) fn answer(&self, frame: usize, reach: f64) -> Result<Answer, MeasureError> {
         // Frames in which nothing has moved have one answer.
         let same = self.poses.iter().position(|pose| *pose == self.poses[frame]).unwrap_or(frame);
         let key = (same, reach.to_bits());

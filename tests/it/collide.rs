@@ -92,7 +92,7 @@ fn what_is_off_is_told() {
 fn a_deforming_mesh_touches_itself_as_often_by_a_tree_fitted_anew() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes/anim_elephant-gallop");
     let Ok(frames) = std::fs::read(folder.join("frames.f32")) else { return };
-    let mesh = scene::load(&folder.join("topology.obj")).unwrap();
+    let mesh = scene::load(folder.join("topology.obj")).unwrap();
     let (positions, triangles) = in_world(&mesh);
     let numbers: Vec<f32> =
         frames.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();

@@ -61,13 +61,14 @@ pub(super) fn axes(points: &[Vec3], principal: [Vec3; 3]) -> [[Vec3; 3]; 2] {
     };
     let mut lanes = [Vec3A::ZERO; FEW];
     lanes.iter_mut().zip(measured).for_each(|(lane, point)| *lane = (*point).into());
-    let mut best = Best { points: &lanes[..measured.len()], axes: Vec3::AXES, surface: 0.0 };
-    best.surface = best.surface_of(Vec3::AXES);
-    best.offer(principal);
+    let mut best = Best { points: &lanes[..measured.len()], axes: principal, surface: 0.0 };
+    best.surface = best.surface_of(principal);
     if points.len() > FEW {
         best.of_tetrahedra(measured);
     }
     best.turn();
+    // Only now: a flat patch that is not yet turned into its own plane would lose to them.
+    best.offer(Vec3::AXES);
     [best.axes, Vec3::AXES]
 }
 

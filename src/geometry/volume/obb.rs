@@ -76,7 +76,7 @@ impl Obb {
     pub fn tight(points: &[Vec3]) -> Self {
         // Many points are sampled: their covariance is but one offer.
         let sample = points.iter().step_by(points.len() / SAMPLE + 1).copied();
-        extremes::axes(points, principal_axes(sample))
+        extremes::axes(points, || principal_axes(sample))
             .into_iter()
             .find_map(|axes| Self::with_axes(axes, points))
             .unwrap_or(Self::EMPTY)

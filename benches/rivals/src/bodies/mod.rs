@@ -14,6 +14,7 @@ mod threads;
 use crate::clock::{self, Run, least, median, ratios};
 use apportion::geometry::{Aabb, Obb, Overlap, Rigid};
 use apportion::structure::VolumeTree;
+use contenders::Pairs;
 use glam_ours::DVec3;
 use meshes::Mesh;
 use std::path::Path;
@@ -55,13 +56,14 @@ fn questions(body: &Rc<Mesh>) -> Vec<Question> {
         let name = format!("two of {}, a gap of {} % of its longest side", body.name, share * 100.0);
         Question { name, a: body.clone(), b: body.clone(), apart, pushed, target }
     };
-    let shell = Rc::new(meshes::of_scene("shell"));
+    let shell = Rc::new(meshes::shell("shell"));
+    let radius = meshes::longest_side(&shell) / 2.0;
     let within = |inner: &str, gap: f64, target: f64| Question {
         name: format!("{inner} within shell"),
         a: shell.clone(),
-        b: Rc::new(meshes::of_scene(inner)),
+        b: Rc::new(meshes::shell(inner)),
         apart: DVec3::ZERO,
-        pushed: DVec3::X * (2.0 * gap),
+        pushed: DVec3::X * (2.0 * gap * radius),
         target,
     };
     vec![
@@ -85,7 +87,8 @@ fn ask(question: &Question) {
         question.b.len(),
         question.target
     );
-    println!("pushed into each other: {} pairs touch, parry tells {} otherwise", pairs.ours, pairs.otherwise);
+    let Pairs { ours, missed, added } = pairs;
+    println!("pushed into each other: {ours} pairs touch; parry misses {missed} and adds {added}");
     println!("{:46} median, least us; times the first; box tests, triangle tests; ns a box test", "");
     for (one, own) in contenders.iter().zip(&times) {
         let (middle, ratio) = (median(own.iter().copied()), median(ratios(own, &times[0])));

@@ -4,54 +4,45 @@
 //! The way of Larsson and Kallberg's DiTO-14 (Fast computation of tight-fitting oriented bounding boxes, 2011): the
 //! extreme points along seven directions; the two farthest apart and the one farthest from the line through them
 //! make a triangle, the points farthest on either side of it two tetrahedra; each edge of each face gives a
-//! candidate. Here the covariance's axes are a candidate too, and the best is turned about its thinnest side.
+//! candidate. Here the covariance's axes are a candidate too, or for a leaf's few points three planes that take less
+//! time. These are judged by several turns, since a square is worst off along its diagonal, and the best of all is
+//! turned about its thinnest side.
 
 use glam::{Mat3A, Vec3, Vec3A, Vec4};
 
 /// Up to how many points all are looked at instead of the extreme ones.
 const FEW: usize = 24;
 
-/// Cosines and sines of the turns that are tried about the thinnest side: none, then a sixteenth of a right angle
-/// more each. Written down, because to work them out takes longer than to try them.
-const COS: [f32; 16] = [
-    1.0,
-    0.995_184_7,
-    0.980_785_25,
-    0.956_940_35,
-    0.923_879_5,
-    0.881_921_3,
-    0.831_469_6,
-    0.773_010_43,
-    0.707_106_77,
-    0.634_393_3,
-    0.555_570_24,
-    0.471_396_74,
-    0.382_683_43,
-    0.290_284_66,
-    0.195_090_32,
-    0.098_017_14,
-];
-const SIN: [f32; 16] = [
-    0.0,
-    0.098_017_14,
-    0.195_090_32,
-    0.290_284_66,
-    0.382_683_43,
-    0.471_396_74,
-    0.555_570_24,
-    0.634_393_3,
-    0.707_106_77,
-    0.773_010_43,
-    0.831_469_6,
-    0.881_921_3,
-    0.923_879_5,
-    0.956_940_35,
-    0.980_785_25,
-    0.995_184_7,
+/// Up to how many points, those of four triangles, planes through the two farthest apart stand for their covariance.
+const LEAF: usize = 12;
+
+/// Cosines and sines of four turns. They are written down, because to work them out takes longer than to try them.
+type Turns = [[f32; 4]; 2];
+
+/// None, then a quarter of a right angle more each.
+const SOME: Turns =
+    [[1.0, 0.923_879_5, 0.707_106_77, 0.382_683_43], [0.0, 0.382_683_43, 0.707_106_77, 0.923_879_5]];
+
+/// The turns that are tried about the thinnest side: none, then a sixteenth of a right angle
+/// more each.
+const TURNS: [Turns; 4] = [
+    [[1.0, 0.995_184_7, 0.980_785_25, 0.956_940_35], [0.0, 0.098_017_14, 0.195_090_32, 0.290_284_66]],
+    [
+        [0.923_879_5, 0.881_921_3, 0.831_469_6, 0.773_010_43],
+        [0.382_683_43, 0.471_396_74, 0.555_570_24, 0.634_393_3],
+    ],
+    [
+        [0.707_106_77, 0.634_393_3, 0.555_570_24, 0.471_396_74],
+        [0.707_106_77, 0.773_010_43, 0.831_469_6, 0.881_921_3],
+    ],
+    [
+        [0.382_683_43, 0.290_284_66, 0.195_090_32, 0.098_017_14],
+        [0.923_879_5, 0.956_940_35, 0.980_785_25, 0.995_184_7],
+    ],
 ];
 
 /// Axes to try for a box around some points, the best first; the world's come last.
-pub(super) fn axes(points: &[Vec3], principal: [Vec3; 3]) -> [[Vec3; 3]; 2] {
+pub(super) fn axes(points: &[Vec3], principal: impl FnOnce() -> [Vec3; 3]) -> [[Vec3; 3]; 2] {
     let extreme;
     let measured: &[Vec3] = if points.len() <= FEW {
         points
@@ -61,14 +52,18 @@ pub(super) fn axes(points: &[Vec3], principal: [Vec3; 3]) -> [[Vec3; 3]; 2] {
     };
     let mut lanes = [Vec3A::ZERO; FEW];
     lanes.iter_mut().zip(measured).for_each(|(lane, point)| *lane = (*point).into());
-    let mut best = Best { points: &lanes[..measured.len()], axes: principal, surface: 0.0 };
-    best.surface = best.surface_of(principal);
+    let mut best = Best { points: &lanes[..measured.len()], axes: Vec3::AXES, surface: 0.0 };
+    best.surface = best.surface_of(Vec3::AXES);
+    if points.len() > LEAF {
+        let axes = best.thinnest_last(principal());
+        best.offer_turned(axes, &SOME);
+    } else {
+        best.of_leaf();
+    }
     if points.len() > FEW {
         best.of_tetrahedra(measured);
     }
     best.turn();
-    // Only now: a flat patch that is not yet turned into its own plane would lose to them.
-    best.offer(Vec3::AXES);
     [best.axes, Vec3::AXES]
 }
 
@@ -174,32 +169,71 @@ impl Best<'_> {
         }
     }
 
+    /// Offers the planes through the two points farthest apart and those farthest off their line, to either side, and
+    /// the plane along both pairs: two triangles have no other that is large.
+    fn of_leaf(&mut self) {
+        let Some(&any) = self.points.first() else { return };
+        let a = self.farthest(any, |point| point);
+        let b = self.farthest(a, |point| point);
+        let Some(along) = (b - a).try_normalize() else { return };
+        // Across that line: from the point farthest off it to the one farthest from that.
+        let off = |point: Vec3A| (point - a).reject_from_normalized(along);
+        let c = self.farthest(Vec3A::ZERO, off);
+        let d = self.farthest(c, off);
+        for across in [c - d, c, d] {
+            let Some(normal) = along.cross(across).try_normalize() else { continue };
+            // As with a face: the normal may lean where all lie close to the line; the axes must not.
+            let Some(side) = normal.cross(along).try_normalize() else { continue };
+            let normal = along.cross(side).normalize_or_zero();
+            // A square is worst off along its diagonal: a plane is judged by some of its turns.
+            self.offer_turned([along, side, normal].map(Vec3::from), &SOME);
+        }
+    }
+
+    /// What is farthest from somewhere, of what a function makes of the points.
+    fn farthest(&self, from: Vec3A, made: impl Fn(Vec3A) -> Vec3A) -> Vec3A {
+        let (mut best, mut most) = (from, 0.0);
+        for point in self.points {
+            let there = made(*point);
+            let distance = there.distance_squared(from);
+            if distance > most {
+                (best, most) = (there, distance);
+            }
+        }
+        best
+    }
+
+    /// The same axes, the one along which the box is thinnest last.
+    fn thinnest_last(&self, axes: [Vec3; 3]) -> [Vec3; 3] {
+        let extents = self.extents(axes);
+        let thinnest = (0..3).min_by(|&i, &j| extents[i].total_cmp(&extents[j])).unwrap_or(0);
+        [1, 2, 0].map(|step| axes[(thinnest + step) % 3])
+    }
+
     /// Tries turns about the axis along which the box is thinnest.
     fn turn(&mut self) {
-        let extents = self.extents(self.axes);
-        let thinnest = (0..3).min_by(|&i, &j| extents[i].total_cmp(&extents[j])).unwrap_or(0);
-        let height = extents[thinnest];
-        let [u, v, w] = [1, 2, 0].map(|step| self.axes[(thinnest + step) % 3]);
-        let (along, across) = (Vec3A::from(u), Vec3A::from(v));
-        // Four turns at once, from what a point has of either axis.
-        for (first, (cos, sin)) in
-            (0..16).step_by(4).zip(COS.as_chunks::<4>().0.iter().zip(SIN.as_chunks::<4>().0))
-        {
-            let (cos, sin) = (Vec4::from_array(*cos), Vec4::from_array(*sin));
-            let (mut low, mut high) = ([Vec4::INFINITY; 2], [Vec4::NEG_INFINITY; 2]);
-            for point in self.points {
-                let (a, b) = (along.dot(*point), across.dot(*point));
-                for (i, at) in [cos * a + sin * b, cos * b - sin * a].into_iter().enumerate() {
-                    (low[i], high[i]) = (low[i].min(at), high[i].max(at));
-                }
+        let axes = self.thinnest_last(self.axes);
+        TURNS.iter().for_each(|turns| self.offer_turned(axes, turns));
+    }
+
+    /// Offers axes turned about the third, four turns at once.
+    fn offer_turned(&mut self, [u, v, w]: [Vec3; 3], turns: &Turns) {
+        let [along, across, up] = [u, v, w].map(Vec3A::from);
+        let [cos, sin] = turns.map(Vec4::from_array);
+        let (mut low, mut high) = ([Vec4::INFINITY; 3], [Vec4::NEG_INFINITY; 3]);
+        for point in self.points {
+            let (a, b) = (along.dot(*point), across.dot(*point));
+            let turned = [cos * a + sin * b, cos * b - sin * a, Vec4::splat(up.dot(*point))];
+            for (i, at) in turned.into_iter().enumerate() {
+                (low[i], high[i]) = (low[i].min(at), high[i].max(at));
             }
-            let [x, y] = [high[0] - low[0], high[1] - low[1]];
-            let surfaces = x * y + (x + y) * height;
-            for (turn, surface) in (first..).zip(surfaces.to_array()) {
-                if surface < self.surface {
-                    let (cos, sin) = (COS[turn], SIN[turn]);
-                    (self.axes, self.surface) = ([u * cos + v * sin, v * cos - u * sin, w], surface);
-                }
+        }
+        let [x, y, z] = [0, 1, 2].map(|i| high[i] - low[i]);
+        let surfaces = x * y + (x + y) * z;
+        for (turn, surface) in surfaces.to_array().into_iter().enumerate() {
+            if surface < self.surface {
+                let (cos, sin) = (turns[0][turn], turns[1][turn]);
+                (self.axes, self.surface) = ([u * cos + v * sin, v * cos - u * sin, w], surface);
             }
         }
     }

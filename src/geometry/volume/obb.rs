@@ -70,7 +70,7 @@ impl Obb {
     }
 
     /// A tight box around some points, for many points at a time: of the axes of the world, those of the points'
-    /// covariance, and those that fourteen extreme points suggest (see [`extremes`]), the ones with the
+    /// covariance, and those that fourteen extreme points suggest, the ones with the
     /// least surface, turned about the thinnest side as far as that helps. Its axes are at right angles but for
     /// rounding. Empty if there are none.
     pub fn tight(points: &[Vec3]) -> Self {

@@ -78,6 +78,7 @@ impl Obb {
         let sample = points.iter().step_by(points.len() / SAMPLE + 1).copied();
         extremes::axes(points, || principal_axes(sample))
             .into_iter()
+            .filter_map(at_right_angles)
             .find_map(|axes| Self::with_axes(axes, points))
             .unwrap_or(Self::EMPTY)
     }
@@ -112,6 +113,16 @@ impl Obb {
         let half = self.half.max(Vec3::ZERO);
         8.0 * (half.x * half.y + half.y * half.z + half.z * half.x)
     }
+}
+
+/// Axes like these at right angles, as near as f32 can write them; `None` if they are too far from it. What was made
+/// of points so close that their products underflow leans, or has no length to speak of.
+fn at_right_angles(axes: [Vec3; 3]) -> Option<[Vec3; 3]> {
+    let [u, v, _] = axes.map(|axis| axis.as_dvec3());
+    let u = u.try_normalize()?;
+    let v = v.reject_from_normalized(u);
+    let v = (v.length() > 0.5).then(|| v.normalize())?;
+    Some([u, v, u.cross(v)].map(DVec3::as_vec3))
 }
 
 /// An axis-aligned box taken for an oriented one, as Paper I did (sec. 4).
@@ -285,6 +296,29 @@ mod tests {
                 let way = (point - found.centre).as_dvec3();
                 for (axis, half) in found.axes.iter().zip(found.half.to_array()) {
                     assert!(way.dot(axis.as_dvec3()).abs() <= f64::from(half) + 1e-3);
+                }
+            }
+        }
+    }
+
+    /// The overlap test counts on it (see [`crate::geometry::overlap`]).
+    #[test]
+    fn tight_boxes_have_right_angles_however_small_they_are() {
+        for size in [1e-43, 1e-30, 3e-23, 1e-19, 1.0, 1e17] {
+            for seed in 0..200 {
+                let point = |i: u32| {
+                    let part = |k: u32| {
+                        (((seed * 31 + i * 7 + k).wrapping_mul(2_654_435_761)) >> 8) as f32 / 8_388_608.0
+                            - 1.0
+                    };
+                    Vec3::new(part(0), part(1), part(2)) * size
+                };
+                let points: Vec<Vec3> = (0..3 + seed % 40).map(point).collect();
+                let [u, v, w] = Obb::tight(&points).axes;
+                for product in
+                    [u.dot(v), v.dot(w), w.dot(u), u.length() - 1.0, v.length() - 1.0, w.length() - 1.0]
+                {
+                    assert!(product.abs() < 3e-7, "{size} {seed}: {product}");
                 }
             }
         }

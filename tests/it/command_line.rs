@@ -34,7 +34,7 @@ fn lists_the_experiments_from_anywhere() {
     let output = apportion(folder.path(), &["list"]);
     assert!(output.status.success());
     let list = out(&output);
-    assert!(list.contains("Paper II\n  cull-large "), "{list}");
+    assert!(list.contains("Paper II\n  collide-aabb ") && list.contains("\n  cull-large "), "{list}");
     assert!(list.contains("Fig. 1a") && list.contains("\nQuestions of our own\n"), "{list}");
     assert!(list.lines().all(|line| line.chars().count() <= 80), "{list}");
 }

@@ -14,6 +14,7 @@ pub mod oracle;
 pub mod overlap;
 mod plane;
 pub mod raster;
+mod ray;
 mod rigid;
 pub mod volume;
 
@@ -26,5 +27,6 @@ pub use frustum::Frustum;
 pub use lanes::Unit;
 pub use overlap::Overlap;
 pub use plane::{PLANE_COUNT, Plane};
+pub use ray::{Hit, Ray};
 pub use rigid::Rigid;
 pub use volume::{KDop, Movable, Obb, Sphere, Volume};

@@ -3,6 +3,7 @@
 mod aabb_tree;
 mod box_tree;
 mod boxes;
+pub mod bvh;
 mod midpoint;
 mod midpoint_tree;
 mod moving_tree;

@@ -1,0 +1,30 @@
+//! Bounding volume hierarchies for rays: binary ones as their builders make them, and wide ones that rays go through.
+
+mod binary;
+
+pub use binary::{BinaryBvh, BinaryNode};
+
+use crate::geometry::{Hit, Ray};
+
+/// What answers for rays: a hierarchy, or a list gone through item by item.
+///
+/// Of hits equally near, the one with the lowest item number is told, so every structure over the same items tells the
+/// same, bit for bit.
+pub trait Intersector: Sync {
+    /// The nearest hit.
+    fn closest(&self, ray: &Ray) -> Option<Hit>;
+
+    /// Whether there is any hit.
+    fn occluded(&self, ray: &Ray) -> bool;
+
+    /// The nearest hits of rays that start near one another and go much the same way.
+    ///
+    /// # Panics
+    /// If there are not as many `hits` as `rays`.
+    fn closest_coherent(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), hits.len(), "a place for the hit of each ray");
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.closest(ray);
+        }
+    }
+}

@@ -25,6 +25,14 @@ const HIDDEN: [&str; 10] = [
 /// Seed of the bootstrap, as in [`super::group`].
 const SEED: u64 = 1;
 
+/// Settings of a job that say what is asked, as those of its scene do, and not how it is answered.
+const ASKED: [&str; 6] = ["job.gap", "job.offset", "job.place", "job.query", "job.reach", "job.scale"];
+
+/// Whether cells that differ in this setting answer different questions, so that neither can take the other's place.
+fn is_asked(key: &str) -> bool {
+    key.starts_with("scene.") || ASKED.contains(&key)
+}
+
 /// Whether all that ran was the serial scheme on one processor.
 pub(crate) fn nothing_is_shared(groups: &[Group]) -> bool {
     let alone = |group: &Group| {
@@ -42,12 +50,12 @@ pub(crate) fn compared(rows: &[Row]) -> Vec<Group> {
     if nothing_is_shared(&groups) { Vec::new() } else { groups }
 }
 
-/// The cells of a machine, a scene and a camera path.
+/// The cells of a machine, a scene and a question about it, such as a camera path.
 #[derive(Clone, Debug)]
 pub(crate) struct Choices {
     pub(crate) machine: String,
     pub(crate) scene: String,
-    /// What is set about the scene where that differs, `key=value key=value`.
+    /// What is asked about the scene where that differs, `key=value key=value`.
     pub(crate) view: String,
     /// The metrics that are there.
     pub(crate) columns: Vec<&'static Metric>,
@@ -73,11 +81,11 @@ fn differing(rows: &[Row]) -> BTreeSet<&str> {
     pairs.into_iter().filter(|pair| !everywhere(pair)).map(|(key, _)| key).collect()
 }
 
-/// What a cell of these rows is called: the values of the settings that differ, but for the scene's. Where it is one
-/// setting, its key goes without saying.
+/// What a cell of these rows is called: the values of the settings that differ, but for those that are asked. Where it
+/// is one setting, its key goes without saying.
 pub(crate) fn labels(rows: &[Row]) -> impl Fn(&str) -> String {
     let keys: BTreeSet<String> =
-        differing(rows).into_iter().filter(|key| !key.starts_with("scene.")).map(str::to_owned).collect();
+        differing(rows).into_iter().filter(|key| !is_asked(key)).map(str::to_owned).collect();
     move |settings| {
         let own = settings_pairs(settings).filter(|(key, _)| keys.contains(*key));
         let words = own.map(|(key, value)| match keys.len() {
@@ -89,10 +97,10 @@ pub(crate) fn labels(rows: &[Row]) -> impl Fn(&str) -> String {
     }
 }
 
-/// What is set about a cell's scene, of that which differs.
+/// What is asked of a cell, of that which differs.
 pub(crate) fn views(rows: &[Row]) -> impl Fn(&str) -> String {
     let keys: BTreeSet<String> =
-        differing(rows).into_iter().filter(|key| key.starts_with("scene.")).map(str::to_owned).collect();
+        differing(rows).into_iter().filter(|key| is_asked(key)).map(str::to_owned).collect();
     move |settings| {
         let own = settings_pairs(settings).filter(|(key, _)| keys.contains(*key));
         own.map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" ")

@@ -87,18 +87,22 @@ fn place(axis: &Axis, value: f64) -> Value {
 }
 
 fn plot_layers(plot: &Plot) -> Vec<Value> {
-    let (kind, scale) = match plot.x.scale {
+    let scale = |axis: &Axis| match axis.scale {
         Scale::Names(_) => ("ordinal", json!({})),
         Scale::Even => ("quantitative", json!({ "zero": false })),
         Scale::Doubling => ("quantitative", json!({ "type": "log", "base": 2 })),
     };
-    let x = json!({ "field": "x", "type": kind, "title": plot.x.name, "scale": scale, "sort": null });
+    let (kind, x_scale) = scale(&plot.x);
+    let x = json!({ "field": "x", "type": kind, "title": plot.x.name, "scale": x_scale, "sort": null });
     let title = if plot.y.unit.is_empty() {
         plot.y.name.clone()
     } else {
         format!("{}, {}", plot.y.name, plot.y.unit)
     };
-    let y = json!({ "field": "y", "type": "quantitative", "title": title });
+    let mut y = json!({ "field": "y", "type": "quantitative", "title": title });
+    if plot.y.scale == Scale::Doubling {
+        y["scale"] = scale(&plot.y).1;
+    }
     let ours = json!([{ "filter": "!datum.paper" }]);
     let mut layers = vec![
         json!({

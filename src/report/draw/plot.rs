@@ -15,6 +15,12 @@ const DODGE: f64 = 84.0;
 /// Up to so many counts points are moved apart also where they have no intervals.
 const FEW: usize = 2;
 
+/// From so many doublings on, an axis by powers has its ticks at those of ten.
+const DECADES: f64 = 6.6;
+
+/// About the width of a digit, units.
+const WIDTH: usize = 14;
+
 /// Where numbers stand on an axis.
 fn along(axis: &Axis, value: f64) -> f64 {
     if axis.scale == Scale::Doubling { value.max(f64::MIN_POSITIVE).log2() } else { value }
@@ -71,13 +77,8 @@ fn axes(plot: &Plot, size: (u32, u32), peaks: bool, out: &mut String) -> Result<
         .margin_right(if peaks { PEAKS } else { 16 })
         .x_label_area_size(76)
         .y_label_area_size(100)
-        .build_cartesian_2d(ticked(x, (size.0 as usize - 120) / 44), along(y, y.low)..along(y, y.high))
+        .build_cartesian_2d(across(x, size.0 as usize - 120), ticked(y, size.1 as usize / 62))
         .map_err(message)?;
-    let tick_x = |at: &f64| match &x.scale {
-        Scale::Names(names) => names.get(at.round() as usize).cloned().unwrap_or_default(),
-        Scale::Doubling => brief(at.exp2()),
-        Scale::Even => brief(*at),
-    };
     let unit = if y.unit.is_empty() { String::new() } else { format!(", {}", y.unit) };
     let unit_x = if x.unit.is_empty() { String::new() } else { format!(", {}", x.unit) };
     let letters = ("sans-serif", LETTER);
@@ -86,9 +87,8 @@ fn axes(plot: &Plot, size: (u32, u32), peaks: bool, out: &mut String) -> Result<
         .light_line_style(TRANSPARENT)
         .bold_line_style(GRID)
         .axis_style(AXIS)
-        .y_labels(size.1 as usize / 62)
-        .x_label_formatter(&tick_x)
-        .y_label_formatter(&|at| brief(*at))
+        .x_label_formatter(&|at| label(x, *at))
+        .y_label_formatter(&|at| label(y, *at))
         .x_desc(format!("{}{unit_x}", x.name))
         .y_desc(format!("{}{unit}", y.name))
         .axis_desc_style(letters)
@@ -104,12 +104,42 @@ fn axes(plot: &Plot, size: (u32, u32), peaks: bool, out: &mut String) -> Result<
     Ok(Place { box_: (across.start, across.end, down.start, down.end), at: Box::new(at) })
 }
 
-/// The horizontal axis, with at most so many ticks.
+/// What stands at a tick.
+fn label(axis: &Axis, at: f64) -> String {
+    match &axis.scale {
+        Scale::Names(names) => names.get(at.round() as usize).cloned().unwrap_or_default(),
+        Scale::Doubling => brief(at.exp2()),
+        Scale::Even => brief(at),
+    }
+}
+
+/// The horizontal axis, so many units long: as many ticks as leave room between what stands at them.
+fn across(axis: &Axis, length: usize) -> Ticked {
+    let fits = |most: usize| {
+        let ticked = ticked(axis, most);
+        let widest = ticked.ticks().iter().map(|at| label(axis, *at).len()).max().unwrap_or_default();
+        let room = widest * WIDTH + LETTER as usize;
+        (ticked.ticks().len() * room <= length).then_some(ticked)
+    };
+    (3..=length / 44).rev().find_map(fits).unwrap_or_else(|| ticked(axis, 2))
+}
+
+/// An axis with at most so many ticks.
 fn ticked(axis: &Axis, most: usize) -> Ticked {
     let range = along(axis, axis.low)..along(axis, axis.high);
     let (first, last) = match &axis.scale {
         Scale::Names(names) => (0, names.len() as i32 - 1),
         Scale::Even if axis.name != "processors" => return Ticked::round(range, most),
+        // A number that is no count is read by its power of ten.
+        Scale::Doubling if axis.name != "processors" && range.end - range.start > DECADES => {
+            let power = 10f64.log2();
+            let (first, last) = ((range.start / power).ceil() as i32, (range.end / power).floor() as i32);
+            let step = ((last - first + 1).unsigned_abs() as usize).div_ceil(most.max(1)).max(1);
+            return Ticked::new(
+                range,
+                (first..=last).step_by(step).map(|at| f64::from(at) * power).collect(),
+            );
+        }
         // Counts of processors, or their powers of two: whole ones only.
         _ => (range.start.ceil() as i32, range.end.floor() as i32),
     };

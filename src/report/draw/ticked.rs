@@ -16,6 +16,10 @@ impl Ticked {
         Self { inner: range.into(), ticks }
     }
 
+    pub(super) fn ticks(&self) -> &[f64] {
+        &self.ticks
+    }
+
     /// At most so many ticks at round numbers.
     pub(super) fn round(range: Range<f64>, most: usize) -> Self {
         let inner = RangedCoordf64::from(range);

@@ -1,10 +1,10 @@
 //! Speed against accuracy, one kind of accuracy at a time, with the Pareto front.
 //!
-//! A panel holds cells that are alternatives: one machine, job and scene. What is given up in *structure* is more
-//! work for the same answer, so that cells stand together only where their answer, the nodes found visible or the
-//! pixels covered, is the same; where rows do not tell the answer, only those that share their common settings do.
-//! Where what is counted is by how much an answer is too large, all cells of the same scene and camera path stand
-//! together. Where no cell gives up more than another there is no choice to show, and nothing is drawn.
+//! A panel holds cells that are alternatives: one machine, job, scene and question about it. What is given up in
+//! *structure* is more work for the same answer, so that cells stand together only where their answer, the nodes found
+//! visible or the pixels covered, is the same; where rows do not tell the answer, only those that share their common
+//! settings do. Where what is counted is by how much an answer is too large, all of them stand together. Where no cell
+//! gives up more than another there is no choice to show, and nothing is drawn.
 
 use super::time::unit;
 use super::words::{bare, machine, number};
@@ -55,16 +55,17 @@ fn figure(material: &Material<'_>, kind: AccuracyKind) -> Option<Figure> {
     let alone = rows.iter().all(|row| row.machine == rows[0].machine);
     let name: Option<&dyn Fn(&str) -> String> = if material.choices.is_empty() { None } else { Some(&label) };
     for metric in METRICS.iter().filter(|metric| metric.accuracy == Some(kind)) {
-        let mut places: BTreeMap<(&str, &str, &str, String), Vec<Choice<'_>>> = BTreeMap::new();
+        let mut places: BTreeMap<(&str, &str, &str, (String, String)), Vec<Choice<'_>>> = BTreeMap::new();
         for (key, &given_up) in &medians(rows, metric.name) {
             let Some(&time) = times.get(key) else { continue };
             let &(machine, job, scene, scheme, settings, processors) = key;
             let same = match (kind, answers.get(key)) {
-                _ if metric.counts_surplus => of_the_scene(settings),
+                _ if metric.counts_surplus => String::new(),
                 (AccuracyKind::Structure, Some(answer)) => number(*answer),
                 (AccuracyKind::Structure, None) => split(settings, machine).0,
                 _ => String::new(),
             };
+            let same = (view(settings), same);
             let choice = Choice { scheme, settings, processors, given_up, time };
             places.entry((machine, job, scene, same)).or_default().push(choice);
         }
@@ -86,12 +87,6 @@ fn figure(material: &Material<'_>, kind: AccuracyKind) -> Option<Figure> {
         legend: entries.into_iter().map(|(_, entry)| entry).collect(),
         panels,
     })
-}
-
-/// The settings that say what is looked at, and from where.
-fn of_the_scene(settings: &str) -> String {
-    let pairs = settings_pairs(settings).filter(|(key, _)| key.starts_with("scene."));
-    pairs.map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(";")
 }
 
 fn panel(
@@ -128,20 +123,9 @@ fn panel(
         }
     }
     let all: Vec<&Point> = series.iter().flat_map(|series| &series.points).collect();
-    let ends = |part: fn(&Point) -> f64| {
-        let low = all.iter().map(|point| part(point)).fold(f64::INFINITY, f64::min);
-        let high = all.iter().map(|point| part(point)).fold(f64::NEG_INFINITY, f64::max);
-        let room = if high > low { 0.08 * (high - low) } else { 1.0 };
-        (low - room, high + room)
-    };
-    let (low, high) = ends(|point| point.x.unwrap_or_default());
-    // Too much is too much of nothing.
-    let low = if metric.counts_surplus { 0.0 } else { low };
     let name = metric.name.replace('_', " ");
-    let x = Axis { name, unit: metric.unit.into(), scale: Scale::Even, low, high };
-    let (_, high) = ends(|point| point.y);
-    let name = "time of all frames".to_owned();
-    let y = Axis { name, unit: unit.into(), scale: Scale::Even, low: 0.0, high };
+    let x = axis(name, metric.unit, all.iter().filter_map(|point| point.x), metric.counts_surplus);
+    let y = axis("time of all frames".to_owned(), unit, all.iter().map(|point| point.y), true);
     let front = front(&all, metric.better);
     // A camera path goes by its name, and a machine that is the only one without saying.
     let short = view.split(' ').map(|pair| pair.strip_prefix("scene.path=").unwrap_or(bare(pair)));
@@ -159,6 +143,24 @@ fn panel(
         note: String::new(),
         body: Body::Plot(Plot { x, y, series }),
     }
+}
+
+/// From this ratio of the greatest to the least number on, most points would lie in a corner of even axes.
+const FAR_APART: f64 = 50.0;
+
+/// An axis that holds these numbers, from zero if told to, or by powers where they are far apart.
+fn axis(name: String, unit: &str, values: impl Iterator<Item = f64>, from_zero: bool) -> Axis {
+    let (low, high) = values
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    let (scale, low, high) = if low > 0.0 && high >= FAR_APART * low {
+        let room = (high / low).powf(0.05);
+        (Scale::Doubling, low / room, high * room)
+    } else {
+        // Enough for what stands at two ticks to differ, where the numbers hardly do.
+        let room = if high > low { (0.08 * (high - low)).max(0.005 * high.abs()) } else { 1.0 };
+        (Scale::Even, if from_zero { 0.0 } else { low - room }, high + room)
+    };
+    Axis { name, unit: unit.to_owned(), scale, low, high }
 }
 
 /// The points that no other beats in one and equals in the other, best accuracy first.

@@ -34,13 +34,13 @@ class Chart {
       const own = bars?.classList.contains("i") ? bars : null;
       return { line, points, places, bars: own, path: own?.getAttribute("d"), aside: +(line.dataset.o || 0) };
     });
-    this.first = { x: this.axis(svg.dataset.x), y: this.axis(svg.dataset.y) };
+    this.first = { x: this.axis(svg.dataset.x, svg.dataset.xn), y: this.axis(svg.dataset.y, svg.dataset.yn) };
     this.whole();
   }
 
-  axis(text) {
+  axis(text, name) {
     const [kind, low, high] = text.split(" ");
-    return { kind, low: +low, high: +high };
+    return { kind, low: +low, high: +high, counts: name === "processors" };
   }
 
   whole() {
@@ -68,7 +68,7 @@ class Chart {
       if (which === "x") axis.high = Math.max(axis.high, axis.low * 2);
     } else if (!this.zoomed) {
       Object.assign(axis, this.first[which], { kind });
-      if (which === "x" && this.first.x.kind === "log") axis.low = 0;
+      if (this.first[which].kind === "log") axis.low = 0;
     }
     this.draw();
   }
@@ -144,9 +144,12 @@ class Chart {
     if (axis.kind === "names") return null;
     const ticks = [];
     if (axis.kind === "log") {
-      const span = Math.log2(axis.high / axis.low);
-      const step = Math.max(1, Math.ceil(span / most));
-      for (let at = Math.ceil(Math.log2(axis.low)); 2 ** at <= axis.high; at += step) ticks.push(2 ** at);
+      const doublings = Math.log2(axis.high / axis.low);
+      // A number that is no count is read by its power of ten.
+      const base = !axis.counts && doublings > 6.6 ? 10 : 2;
+      const power = (value) => Math.log2(value) / Math.log2(base);
+      const step = Math.max(1, Math.ceil(doublings / Math.log2(base) / most));
+      for (let at = Math.ceil(power(axis.low)); base ** at <= axis.high; at += step) ticks.push(base ** at);
       if (ticks.length > 1) return ticks;
       ticks.length = 0;
     }

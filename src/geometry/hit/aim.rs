@@ -88,24 +88,6 @@ impl Aim {
     pub(crate) fn goes_with(&self, other: &Self) -> bool {
         self.octant == other.octant && self.axes == other.axes
     }
-
-    /// What a beam of rays has in common with this one among them.
-    ///
-    /// # Safety
-    /// The processor has the lanes' vector unit.
-    #[inline(always)]
-    unsafe fn beam_of<L: Lanes>(&self, lanes: impl Fn(&dyn Fn(&Self) -> f32) -> L) -> Beam<L> {
-        let each = |part: fn(&Self) -> Vec3| [0, 1, 2].map(|axis| lanes(&|aim| part(aim)[axis]));
-        Beam {
-            origin: each(|aim| aim.origin),
-            direction: each(|aim| aim.direction),
-            first_rate: each(|aim| aim.first_rate),
-            last_rate: each(|aim| aim.last_rate),
-            shear: [0, 1, 2].map(|axis| lanes(&|aim| aim.shear[axis])),
-            axes: self.axes.map(usize::from),
-            turns: [0, 1, 2].map(|axis| self.octant >> axis & 1 == 0),
-        }
-    }
 }
 
 /// Rays of one octant, or one ray, as many as there are lanes.
@@ -118,7 +100,7 @@ pub(crate) struct Beam<L> {
     pub(super) shear: [L; 3],
     pub(super) axes: [usize; 3],
     /// By axis: whether it goes up, so that the plane it comes to last is the greatest.
-    pub(super) turns: [bool; 3],
+    pub(super) rises: [bool; 3],
 }
 
 impl<L> Beam<L> {
@@ -126,7 +108,8 @@ impl<L> Beam<L> {
     /// pair differs in the last bit.
     #[inline(always)]
     pub(crate) fn rows(&self) -> [usize; 3] {
-        [0, 1, 2].map(|axis| 2 * axis + usize::from(!self.turns[axis]))
+        let [x, y, z] = self.rises;
+        [usize::from(!x), 2 + usize::from(!y), 4 + usize::from(!z)]
     }
 }
 
@@ -138,21 +121,33 @@ impl<L: Lanes> Beam<L> {
     #[inline(always)]
     pub(crate) unsafe fn one(aim: &Aim) -> Self {
         // SAFETY: the processor is the caller's.
-        unsafe { aim.beam_of(|part| L::splat(part(aim))) }
-    }
-
-    /// A ray in each lane; all go with the first.
-    ///
-    /// # Safety
-    /// The processor has the lanes' vector unit.
-    #[inline(always)]
-    pub(crate) unsafe fn several(aims: &[Aim; 16], from: usize) -> Self {
-        // SAFETY: the processor is the caller's; no vector has more than 16 lanes, and they begin where so many are.
         unsafe {
-            aims[0].beam_of(|part| {
-                let column: [f32; 16] = std::array::from_fn(|i| part(&aims[i]));
-                L::load(&column, from)
-            })
+            Self {
+                origin: spread(aim.origin.to_array()),
+                direction: spread(aim.direction.to_array()),
+                first_rate: spread(aim.first_rate.to_array()),
+                last_rate: spread(aim.last_rate.to_array()),
+                shear: spread(aim.shear),
+                axes: axes(aim),
+                rises: rises(aim),
+            }
         }
     }
+}
+
+#[inline(always)]
+unsafe fn spread<L: Lanes>([x, y, z]: [f32; 3]) -> [L; 3] {
+    // SAFETY: the processor is the caller's.
+    unsafe { [L::splat(x), L::splat(y), L::splat(z)] }
+}
+
+#[inline(always)]
+fn axes(aim: &Aim) -> [usize; 3] {
+    let [x, y, z] = aim.axes;
+    [usize::from(x), usize::from(y), usize::from(z)]
+}
+
+#[inline(always)]
+fn rises(aim: &Aim) -> [bool; 3] {
+    [aim.octant & 1 == 0, aim.octant & 2 == 0, aim.octant & 4 == 0]
 }

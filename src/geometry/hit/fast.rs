@@ -2,7 +2,7 @@
 //! its absolute bound on the determinant, which loses whatever is small.
 
 use super::sealed::Edges;
-use super::{Beam, Found, TriangleTest};
+use super::{Beam, Corners, Found, TriangleTest};
 use crate::geometry::lanes::Lanes;
 
 /// The fast test. A ray aimed at an edge that two triangles share may slip between them; [`super::Watertight`] lets
@@ -15,15 +15,27 @@ impl TriangleTest for Fast {
 }
 
 #[inline(always)]
+unsafe fn place<L: Lanes>(triangles: &impl Corners<L>, corner: usize) -> [L; 3] {
+    // SAFETY: the processor is the caller's.
+    unsafe { [triangles.at(corner, 0), triangles.at(corner, 1), triangles.at(corner, 2)] }
+}
+
+#[inline(always)]
 unsafe fn minus<L: Lanes>(a: [L; 3], b: [L; 3]) -> [L; 3] {
     // SAFETY: the processor is the caller's.
-    [0, 1, 2].map(|axis| unsafe { a[axis].sub(b[axis]) })
+    unsafe { [a[0].sub(b[0]), a[1].sub(b[1]), a[2].sub(b[2])] }
 }
 
 #[inline(always)]
 unsafe fn cross<L: Lanes>(a: [L; 3], b: [L; 3]) -> [L; 3] {
     // SAFETY: the processor is the caller's.
-    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| unsafe { a[i].mul(b[j]).sub(a[j].mul(b[i])) })
+    unsafe {
+        [
+            a[1].mul(b[2]).sub(a[2].mul(b[1])),
+            a[2].mul(b[0]).sub(a[0].mul(b[2])),
+            a[0].mul(b[1]).sub(a[1].mul(b[0])),
+        ]
+    }
 }
 
 #[inline(always)]
@@ -36,13 +48,10 @@ impl Edges for Fast {
     #[expect(private_interfaces, reason = "the trait cannot be named outside this crate")]
     #[expect(private_bounds, reason = "as above")]
     #[inline(always)]
-    unsafe fn within_edges<L: Lanes>(
-        beam: &Beam<L>,
-        corner: impl Fn(usize, usize) -> L + Copy,
-    ) -> Option<Found<L>> {
+    unsafe fn within_edges<L: Lanes>(beam: &Beam<L>, triangles: &impl Corners<L>) -> Option<Found<L>> {
         // SAFETY: the processor is the caller's.
         unsafe {
-            let [a, b, c] = [0, 1, 2].map(|of| [0, 1, 2].map(|axis| corner(of, axis)));
+            let (a, b, c) = (place(triangles, 0), place(triangles, 1), place(triangles, 2));
             let (ab, ac) = (minus(b, a), minus(c, a));
             let p = cross(beam.direction, ac);
             let from_a = minus(beam.origin, a);

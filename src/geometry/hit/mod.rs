@@ -43,22 +43,28 @@ pub trait TriangleTest: Copy + Default + Send + Sync + 'static + sealed::Edges {
 }
 
 pub(crate) mod sealed {
-    use super::{Beam, Found, Lanes};
+    use super::{Beam, Corners, Found, Lanes};
 
     /// The test itself, before a hit is held against its triangle's box.
     pub trait Edges {
-        /// Whether the rays pass within the edges, and where; `None` if no lane does. `corner` tells a coordinate by
-        /// corner and axis; a lane with a NaN meets nothing.
+        /// Whether the rays pass within the edges, and where; `None` if no lane does. A lane with a NaN meets nothing.
         ///
         /// # Safety
         /// The processor has the lanes' vector unit.
         #[expect(private_interfaces, reason = "the trait cannot be named outside this crate")]
         #[expect(private_bounds, reason = "as above")]
-        unsafe fn within_edges<L: Lanes>(
-            beam: &Beam<L>,
-            corner: impl Fn(usize, usize) -> L + Copy,
-        ) -> Option<Found<L>>;
+        unsafe fn within_edges<L: Lanes>(beam: &Beam<L>, triangles: &impl Corners<L>) -> Option<Found<L>>;
     }
+}
+
+/// Triangles, one a lane.
+///
+/// # Safety of the methods
+/// The processor has the lanes' vector unit. They are called where no closure is: what is not inlined has not the
+/// unit's target feature, and costs ten times as much.
+pub(crate) trait Corners<L> {
+    /// A coordinate, by corner and axis, both below 3.
+    unsafe fn at(&self, corner: usize, axis: usize) -> L;
 }
 
 /// Which lanes' rays and triangles meet.
@@ -68,20 +74,28 @@ pub(crate) mod sealed {
 #[inline(always)]
 pub(crate) unsafe fn meet<L: Lanes, T: TriangleTest>(
     beam: &Beam<L>,
-    corner: impl Fn(usize, usize) -> L + Copy,
+    triangles: &impl Corners<L>,
 ) -> Option<Found<L>> {
     // SAFETY: the processor is the caller's.
     unsafe {
-        let found = T::within_edges(beam, corner)?;
-        let side = |axis: usize, greatest: bool| {
-            let [a, b, c] = [0, 1, 2].map(|of| corner(of, axis));
-            if greatest { a.max(b).max(c) } else { a.min(b).min(c) }
-        };
+        let found = T::within_edges(beam, triangles)?;
+        let (x, y, z) = (sides(beam, triangles, 0), sides(beam, triangles, 1), sides(beam, triangles, 2));
         let all = [L::splat(f32::NEG_INFINITY), L::splat(f32::INFINITY)];
-        let [enters, leaves] = slab(beam, all, |axis, last| side(axis, beam.turns[axis] == last));
+        let [enters, leaves] = slab(beam, all, [x[0], y[0], z[0]], [x[1], y[1], z[1]]);
         // A NaN stays one, as the second argument does.
         let t = leaves.min(enters.max(found.t));
         Some(Found { lanes: found.lanes & leaves.at_least(enters), t, ..found })
+    }
+}
+
+/// The planes of the triangles' boxes on an axis, that which the rays come to first and the other.
+#[inline(always)]
+unsafe fn sides<L: Lanes>(beam: &Beam<L>, triangles: &impl Corners<L>, axis: usize) -> [L; 2] {
+    // SAFETY: the processor is the caller's.
+    unsafe {
+        let (a, b, c) = (triangles.at(0, axis), triangles.at(1, axis), triangles.at(2, axis));
+        let (least, greatest) = (a.min(b).min(c), a.max(b).max(c));
+        if beam.rises[axis] { [least, greatest] } else { [greatest, least] }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The watertight test of Woop, Benthin and Wald (2013), "Watertight Ray/Triangle Intersection", JCGT 2(1), sec. 3.
 
 use super::sealed::Edges;
-use super::{Beam, Found, TriangleTest};
+use super::{Beam, Corners, Found, TriangleTest};
 use crate::geometry::lanes::Lanes;
 
 /// The watertight test: no ray slips through an edge or a corner that triangles share. Corners are sheared so that the
@@ -22,23 +22,19 @@ impl Edges for Watertight {
     #[expect(private_interfaces, reason = "the trait cannot be named outside this crate")]
     #[expect(private_bounds, reason = "as above")]
     #[inline(always)]
-    unsafe fn within_edges<L: Lanes>(
-        beam: &Beam<L>,
-        corner: impl Fn(usize, usize) -> L + Copy,
-    ) -> Option<Found<L>> {
+    unsafe fn within_edges<L: Lanes>(beam: &Beam<L>, triangles: &impl Corners<L>) -> Option<Found<L>> {
         // SAFETY: the processor is the caller's.
         unsafe {
-            let corners = [0, 1, 2].map(|of| {
-                let [x, y, z] = beam.axes.map(|axis| corner(of, axis).sub(beam.origin[axis & 3]));
-                [x.sub(beam.shear[0].mul(z)), y.sub(beam.shear[1].mul(z)), z]
-            });
-            let weight = |p: [L; 3], q: [L; 3]| p[0].mul(q[1]).sub(p[1].mul(q[0]));
-            let [a, b, c] = corners;
+            let axes = beam.axes;
+            let from = [beam.origin[axes[0] & 3], beam.origin[axes[1] & 3], beam.origin[axes[2] & 3]];
+            let a = sheared(beam, triangles, from, 0);
+            let b = sheared(beam, triangles, from, 1);
+            let c = sheared(beam, triangles, from, 2);
             let mut weights = [weight(c, b), weight(a, c), weight(b, a)];
             let [u, v, w] = weights;
             let zero = L::splat(0.0);
             if zero.at_least(u.abs().min(v.abs()).min(w.abs())) != 0 {
-                weights = exact(corners, weights);
+                weights = exact([a, b, c], weights);
             }
             let [u, v, w] = weights;
             let determinant = u.add(v).add(w);
@@ -54,20 +50,44 @@ impl Edges for Watertight {
     }
 }
 
+/// A corner as seen from the ray's origin, sheared so that the ray goes along z.
+#[inline(always)]
+unsafe fn sheared<L: Lanes>(beam: &Beam<L>, triangles: &impl Corners<L>, from: [L; 3], corner: usize) -> [L; 3] {
+    // SAFETY: the processor is the caller's.
+    unsafe {
+        let [x, y, z] = beam.axes;
+        let z = triangles.at(corner, z).sub(from[2]);
+        let x = triangles.at(corner, x).sub(from[0]).sub(beam.shear[0].mul(z));
+        let y = triangles.at(corner, y).sub(from[1]).sub(beam.shear[1].mul(z));
+        [x, y, z]
+    }
+}
+
+/// On which side of an edge the ray passes, and how far, in shares of the edge.
+#[inline(always)]
+unsafe fn weight<L: Lanes>(p: [L; 3], q: [L; 3]) -> L {
+    // SAFETY: the processor is the caller's.
+    unsafe { p[0].mul(q[1]).sub(p[1].mul(q[0])) }
+}
+
 /// The weights, those of lanes in which one is zero without rounding.
 #[inline(always)]
-unsafe fn exact<L: Lanes>(corners: [[L; 3]; 3], weights: [L; 3]) -> [L; 3] {
+unsafe fn exact<L: Lanes>([a, b, c]: [[L; 3]; 3], [u, v, w]: [L; 3]) -> [L; 3] {
+    // SAFETY: the processor is the caller's.
+    unsafe {
+        let places = [[column(a[0]), column(a[1])], [column(b[0]), column(b[1])], [column(c[0]), column(c[1])]];
+        let mut weights = [column(u), column(v), column(w)];
+        exactly(&places, &mut weights, L::LEN);
+        [L::load(&weights[0], 0), L::load(&weights[1], 0), L::load(&weights[2], 0)]
+    }
+}
+
+#[inline(always)]
+unsafe fn column<L: Lanes>(lanes: L) -> Column {
+    let mut column = [0.0; 16];
     // SAFETY: the processor is the caller's, and no vector has more than 16 lanes.
-    let column = |lanes: L| unsafe {
-        let mut column: Column = [0.0; 16];
-        lanes.store(&mut column, 0);
-        column
-    };
-    let places = corners.map(|[x, y, _]| [column(x), column(y)]);
-    let mut columns = weights.map(column);
-    exactly(&places, &mut columns, L::LEN);
-    // SAFETY: as above.
-    columns.each_ref().map(|column| unsafe { L::load(column, 0) })
+    unsafe { lanes.store(&mut column, 0) };
+    column
 }
 
 #[cold]
@@ -77,8 +97,7 @@ fn exactly(places: &[[Column; 2]; 3], weights: &mut [Column; 3], lanes: usize) {
         if weights.iter().all(|weight| weight[lane] != 0.0) {
             continue;
         }
-        let at = places.each_ref().map(|place| place.each_ref().map(|column| f64::from(column[lane])));
-        let [a, b, c] = at;
+        let [a, b, c] = places.each_ref().map(|place| place.each_ref().map(|column| f64::from(column[lane])));
         for (weight, (p, q)) in weights.iter_mut().zip([(c, b), (a, c), (b, a)]) {
             // Products of two f32 are f64 exactly; what is rounded is their difference, which keeps its sign.
             weight[lane] = (p[0] * q[1] - p[1] * q[0]) as f32;

@@ -1,7 +1,7 @@
 //! One ray on its own.
 
 use super::super::WideBvh;
-use super::super::wide::{Child, TRIANGLES, WIDTH};
+use super::super::wide::{Child, TRIANGLES, Together, WIDTH};
 use super::count::Count;
 use super::nearest::Nearest;
 use crate::geometry::hit::{Aim, Beam, TriangleTest, meet, slab};
@@ -66,10 +66,9 @@ unsafe fn walk<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
                 // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 8.
                 unsafe {
                     let reach = [N::splat(aim.near), N::splat(nearest.t)];
-                    let plane = |axis: usize, last: bool| {
-                        N::load(node.planes.get_unchecked(rows[axis] ^ usize::from(last)), from)
-                    };
-                    let [first, last] = slab(&beam, reach, plane);
+                    let first = [node.row(rows[0], from), node.row(rows[1], from), node.row(rows[2], from)];
+                    let last = [node.row(rows[0] ^ 1, from), node.row(rows[1] ^ 1, from), node.row(rows[2] ^ 1, from)];
+                    let [first, last] = slab(&beam, reach, first, last);
                     hit |= last.at_least(first) << from;
                     first.store(&mut enters, from);
                 }
@@ -110,10 +109,7 @@ unsafe fn walk<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
             for from in (0..TRIANGLES).step_by(B::LEN) {
                 // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 4.
                 unsafe {
-                    let corner = |of: usize, axis: usize| {
-                        B::load(block.corners.get_unchecked(3 * of + axis), from)
-                    };
-                    let Some(found) = meet::<B, T>(&block_beam, corner) else { continue };
+                    let Some(found) = meet::<B, T>(&block_beam, &Together { block, from }) else { continue };
                     let in_reach = found.t.at_least(B::splat(aim.near)) & B::splat(nearest.t).at_least(found.t);
                     let lanes = found.lanes & in_reach;
                     if lanes != 0 {

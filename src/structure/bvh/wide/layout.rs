@@ -1,6 +1,8 @@
 //! Nodes and blocks of triangles as they lie in memory.
 
 use crate::geometry::Aabb;
+use crate::geometry::hit::Corners;
+use crate::geometry::lanes::Lanes;
 use glam::Vec3;
 
 /// Children a node.
@@ -58,6 +60,16 @@ impl Node {
         Self { planes: [least, greatest, least, greatest, least, greatest], children: [Child::NONE; WIDTH] }
     };
 
+    /// One row of planes, of the children from `from` on.
+    ///
+    /// # Safety
+    /// `row` is below 6, there are as many children from `from` on as there are lanes, whose unit the processor has.
+    #[inline(always)]
+    pub(in crate::structure::bvh) unsafe fn row<L: Lanes>(&self, row: usize, from: usize) -> L {
+        // SAFETY: as above.
+        unsafe { L::load(self.planes.get_unchecked(row), from) }
+    }
+
     pub(super) fn set(&mut self, i: usize, bounds: &Aabb, child: Child) {
         for axis in 0..3 {
             self.planes[2 * axis][i] = bounds.min[axis];
@@ -84,5 +96,19 @@ impl Block {
             column[i] = value;
         }
         self.items[i] = item;
+    }
+}
+
+/// Triangles of a block, from `from` on, one a lane.
+pub(in crate::structure::bvh) struct Together<'a> {
+    pub(in crate::structure::bvh) block: &'a Block,
+    pub(in crate::structure::bvh) from: usize,
+}
+
+impl<L: Lanes> Corners<L> for Together<'_> {
+    #[inline(always)]
+    unsafe fn at(&self, corner: usize, axis: usize) -> L {
+        // SAFETY: both are below 3; the lanes are the caller's.
+        unsafe { L::load(self.block.corners.get_unchecked(3 * corner + axis), self.from) }
     }
 }

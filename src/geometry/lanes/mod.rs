@@ -1,18 +1,18 @@
-//! Vectors of numbers, as wide as the processor has them: what the kernels of [`super::box_test`] and
-//! [`super::overlap`] are written with, once for all vector units. All units do the same operations in the same order,
+//! Vectors of numbers, as wide as the processor has them: what the kernels of [`super::box_test`], [`super::overlap`]
+//! and [`super::hit`] are written with, once for all vector units. All units do the same operations in the same order,
 //! without fused ones, so their results are the same bit for bit.
 
 #[cfg(target_arch = "aarch64")]
-pub(super) mod arm;
+pub(crate) mod arm;
 #[cfg(target_arch = "x86_64")]
-pub(super) mod x86;
+pub(crate) mod x86;
 
 /// A vector unit that kernels of up to eight lanes run on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Unit(pub(super) Kind);
+pub struct Unit(pub(crate) Kind);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     #[cfg(target_arch = "x86_64")]
     Avx2,
     #[cfg(target_arch = "x86_64")]
@@ -94,13 +94,22 @@ pub(crate) trait Lanes: Copy {
     unsafe fn add(self, other: Self) -> Self;
     unsafe fn sub(self, other: Self) -> Self;
     unsafe fn mul(self, other: Self) -> Self;
+    unsafe fn div(self, other: Self) -> Self;
     /// The greater of each pair; `other`'s if one is NaN.
     unsafe fn max(self, other: Self) -> Self;
+    /// The lesser of each pair; `other`'s if one is NaN.
+    unsafe fn min(self, other: Self) -> Self;
     unsafe fn abs(self) -> Self;
     /// Asks for the lines that hold some numbers which will be read soon, where the processor can be asked.
     fn prefetch(_soon: &[f32]) {}
+    /// Each lane, its sign turned where `other`'s sign bit is set.
+    unsafe fn turned_by(self, other: Self) -> Self;
     /// Bit `i` is set when lane `i` is greater than `other`'s.
     unsafe fn greater(self, other: Self) -> u64;
+    /// Bit `i` is set when lane `i` is `other`'s or greater.
+    unsafe fn at_least(self, other: Self) -> u64;
+    /// Puts the lanes into memory. In addition: `column` holds `from` and as many more as there are lanes.
+    unsafe fn store(self, column: &mut [f32], from: usize);
 }
 
 impl Lanes for f32 {
@@ -126,15 +135,35 @@ impl Lanes for f32 {
         self * other
     }
     #[inline(always)]
+    unsafe fn div(self, other: Self) -> Self {
+        self / other
+    }
+    #[inline(always)]
     unsafe fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
+    }
+    #[inline(always)]
+    unsafe fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
     }
     #[inline(always)]
     unsafe fn abs(self) -> Self {
         f32::abs(self)
     }
     #[inline(always)]
+    unsafe fn turned_by(self, other: Self) -> Self {
+        f32::from_bits(self.to_bits() ^ (other.to_bits() & 1 << 31))
+    }
+    #[inline(always)]
     unsafe fn greater(self, other: Self) -> u64 {
         u64::from(self > other)
+    }
+    #[inline(always)]
+    unsafe fn at_least(self, other: Self) -> u64 {
+        u64::from(self >= other)
+    }
+    #[inline(always)]
+    unsafe fn store(self, column: &mut [f32], from: usize) {
+        column[from] = self;
     }
 }

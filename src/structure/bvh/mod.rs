@@ -1,8 +1,12 @@
 //! Bounding volume hierarchies for rays: binary ones as their builders make them, and wide ones that rays go through.
 
 mod binary;
+mod traverse;
+mod wide;
 
 pub use binary::{BinaryBvh, BinaryNode};
+pub use traverse::RayCounts;
+pub use wide::WideBvh;
 
 use crate::geometry::{Hit, Ray};
 

@@ -1,0 +1,107 @@
+//! How rays go through a [`WideBvh`]: one at a time, or several that go the same way together.
+//!
+//! The widest vector unit there is does it; all answer the same bit for bit, as the box tests and the triangle tests
+//! of all do the same operations in the same order.
+
+mod count;
+mod nearest;
+mod packet;
+mod single;
+
+pub use count::RayCounts;
+use count::{Count, Uncounted};
+use nearest::Nearest;
+use single::through as walk_single;
+
+use super::{Intersector, WideBvh};
+use crate::geometry::hit::{Aim, TriangleTest};
+use crate::geometry::lanes::Kind;
+use crate::geometry::{Hit, Ray, Unit};
+
+/// Declares a function that runs a traversal on the unit it is told, with that unit's lanes for nodes and for blocks.
+macro_rules! on_unit_through {
+    (fn $name:ident($($argument:ident: $type:ty),*) -> $result:ty = $walk:ident $(, $const:ident)?) => {
+        #[inline]
+        fn $name<T: TriangleTest, C: Count $(, const $const: bool)?>(
+            unit: Unit, bvh: &WideBvh<T>, count: &mut C, $($argument: $type),*
+        ) -> $result {
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2,bmi1,bmi2,popcnt,lzcnt")]
+            fn avx2<T: TriangleTest, C: Count $(, const $const: bool)?>(
+                bvh: &WideBvh<T>, count: &mut C, $($argument: $type),*
+            ) -> $result {
+                use crate::geometry::lanes::x86::{Lanes4, Lanes8};
+                // SAFETY: this function has the feature.
+                unsafe { $walk::<Lanes8, Lanes4, T, C $(, $const)?>(bvh, count, $($argument),*) }
+            }
+            match unit.0 {
+                // SAFETY: a `Unit` is only made where it is there, and every processor with AVX2 has the others.
+                #[cfg(target_arch = "x86_64")]
+                Kind::Avx2 => unsafe { avx2::<T, C $(, $const)?>(bvh, count, $($argument),*) },
+                // SAFETY: every x86-64 processor has the unit.
+                #[cfg(target_arch = "x86_64")]
+                Kind::Sse2 => unsafe {
+                    use crate::geometry::lanes::x86::Lanes4;
+                    $walk::<Lanes4, Lanes4, T, C $(, $const)?>(bvh, count, $($argument),*)
+                },
+                // SAFETY: every 64-bit ARM processor with an operating system has the unit.
+                #[cfg(target_arch = "aarch64")]
+                Kind::Neon => unsafe {
+                    use crate::geometry::lanes::arm::Lanes4;
+                    $walk::<Lanes4, Lanes4, T, C $(, $const)?>(bvh, count, $($argument),*)
+                },
+                // SAFETY: one lane needs no unit.
+                Kind::Scalar => unsafe { $walk::<f32, f32, T, C $(, $const)?>(bvh, count, $($argument),*) },
+            }
+        }
+    };
+}
+
+on_unit_through!(fn through(aim: &Aim) -> Nearest = walk_single, ANY);
+
+impl<T: TriangleTest> WideBvh<T> {
+    /// The nearest hit, by a vector unit of one's choice.
+    #[inline]
+    pub fn closest_on(&self, unit: Unit, ray: &Ray) -> Option<Hit> {
+        self.closest_to(unit, ray, &mut Uncounted)
+    }
+
+    /// The nearest hit, and what it took to find it, which is added to `counts`.
+    pub fn closest_counted(&self, ray: &Ray, counts: &mut RayCounts) -> Option<Hit> {
+        self.closest_to(Unit::best(), ray, counts)
+    }
+
+    /// Whether there is any hit, by a vector unit of one's choice.
+    #[inline]
+    pub fn occluded_on(&self, unit: Unit, ray: &Ray) -> bool {
+        self.occluded_to(unit, ray, &mut Uncounted)
+    }
+
+    /// Whether there is any hit, and what it took to find out, which is added to `counts`.
+    pub fn occluded_counted(&self, ray: &Ray, counts: &mut RayCounts) -> bool {
+        self.occluded_to(Unit::best(), ray, counts)
+    }
+
+    #[inline]
+    fn closest_to(&self, unit: Unit, ray: &Ray, count: &mut impl Count) -> Option<Hit> {
+        let aim = Aim::new(ray, self.scale)?;
+        through::<T, _, false>(unit, self, count, &aim).hit(&aim)
+    }
+
+    #[inline]
+    fn occluded_to(&self, unit: Unit, ray: &Ray, count: &mut impl Count) -> bool {
+        Aim::new(ray, self.scale).is_some_and(|aim| through::<T, _, true>(unit, self, count, &aim).is_hit())
+    }
+}
+
+impl<T: TriangleTest> Intersector for WideBvh<T> {
+    #[inline]
+    fn closest(&self, ray: &Ray) -> Option<Hit> {
+        self.closest_on(Unit::best(), ray)
+    }
+
+    #[inline]
+    fn occluded(&self, ray: &Ray) -> bool {
+        self.occluded_on(Unit::best(), ray)
+    }
+}

@@ -1,0 +1,1 @@
+//! Several rays that go the same way.

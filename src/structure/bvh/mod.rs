@@ -1,8 +1,10 @@
 //! Bounding volume hierarchies for rays: binary ones as their builders make them, and wide ones that rays go through.
 
 mod binary;
+pub mod build;
+pub mod refit;
 
-pub use binary::{BinaryBvh, BinaryNode};
+pub use binary::{BinaryBvh, BinaryNode, BvhStatistics};
 
 use crate::geometry::{Hit, Ray};
 

@@ -60,7 +60,7 @@ impl SahRule {
     }
 
     /// Whether two sides of a cost are cheaper than a leaf.
-    fn pays(&self, items: usize, bounds: &Box8, sides: f32) -> bool {
+    pub(super) fn pays(&self, items: usize, bounds: &Box8, sides: f32) -> bool {
         let area = bounds.half_area();
         self.step_cost * area + self.item_cost * sides < self.item_cost * area * items as f32
     }

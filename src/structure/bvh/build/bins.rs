@@ -61,6 +61,13 @@ impl Grating {
         self.scale == [0.0; 3]
     }
 
+    /// The bin of an item on an axis.
+    #[inline(always)]
+    pub(super) fn bin(&self, item: &Item, axis: usize) -> u32 {
+        let bin = (item.middle(axis) - self.from[axis]) * self.scale[axis];
+        (bin as u32).min(self.bins as u32 - 1)
+    }
+
     /// Takes all axes out but the one of the greatest extent.
     pub(super) fn longest_only(mut self) -> Self {
         // Of equal extents the first; a scale is the less, the longer the axis.
@@ -79,16 +86,15 @@ impl Grating {
 #[derive(Clone)]
 pub(super) struct Bins {
     boxes: [[Box8; MOST_BINS]; 3],
-    items: [[u32; MOST_BINS]; 3],
-    weights: [[u32; MOST_BINS]; 3],
+    /// How many items, and above bit 32 what they weigh.
+    loads: [[u64; MOST_BINS]; 3],
 }
 
 impl Bins {
     pub(super) fn new() -> Box<Self> {
         Box::new(Self {
             boxes: [[Box8::EMPTY; MOST_BINS]; 3],
-            items: [[0; MOST_BINS]; 3],
-            weights: [[0; MOST_BINS]; 3],
+            loads: [[0; MOST_BINS]; 3],
         })
     }
 
@@ -96,8 +102,7 @@ impl Bins {
     pub(super) fn clear(&mut self, grating: &Grating) {
         for axis in 0..3 {
             self.boxes[axis][..grating.bins].fill(Box8::EMPTY);
-            self.items[axis][..grating.bins].fill(0);
-            self.weights[axis][..grating.bins].fill(0);
+            self.loads[axis][..grating.bins].fill(0);
         }
     }
 
@@ -106,8 +111,7 @@ impl Bins {
         for axis in 0..3 {
             for bin in 0..grating.bins {
                 self.boxes[axis][bin] = self.boxes[axis][bin].union(&other.boxes[axis][bin]);
-                self.items[axis][bin] += other.items[axis][bin];
-                self.weights[axis][bin] += other.weights[axis][bin];
+                self.loads[axis][bin] += other.loads[axis][bin];
             }
         }
     }
@@ -117,7 +121,7 @@ impl Bins {
         let join = |range: std::ops::Range<usize>| {
             self.boxes[axis][range].iter().fold(Box8::EMPTY, |all, one| all.union(one))
         };
-        let left = self.items[axis][..bin].iter().map(|count| *count as usize).sum();
+        let left = self.loads[axis][..bin].iter().map(|load| *load as u32 as usize).sum();
         ([join(0..bin), join(bin..bins)], left)
     }
 }
@@ -137,14 +141,14 @@ unsafe fn fill_with<L: Lanes>(items: &[Item], grating: &Grating, bins: &mut Bins
         let last = grating.bins as i32 - 1;
         for item in items {
             let bounds = L::load_item(item);
-            let at = L::bins(bounds.middle(), from, scale);
+            // The outermost middle lies at the end of the last bin, not in it.
+            let at = L::bins(bounds.middle(), from, scale, last);
+            let load = 1 | u64::from(item.weight()) << 32;
             for axis in 0..3 {
-                // The outermost middle lies at the end of the last bin, not in it.
-                let bin = at[axis].clamp(0, last) as usize % MOST_BINS;
+                let bin = at[axis] as usize % MOST_BINS;
                 let into = &mut bins.boxes[axis][bin];
                 L::load(into).union(bounds).store(into);
-                bins.items[axis][bin] += 1;
-                bins.weights[axis][bin] += item.weight();
+                bins.loads[axis][bin] += load;
             }
         }
     }
@@ -166,20 +170,20 @@ unsafe fn best_with<L: Lanes>(bins: &Bins, grating: &Grating) -> Option<Split> {
         if grating.scale[axis] == 0.0 {
             continue;
         }
-        let (boxes, weights) = (&bins.boxes[axis][..grating.bins], &bins.weights[axis][..grating.bins]);
+        let (boxes, loads) = (&bins.boxes[axis][..grating.bins], &bins.loads[axis][..grating.bins]);
         // SAFETY: the unit is there.
         unsafe {
             // The area of nothing is infinite, times a weight of 0: no number, which is less than none.
             let (mut around, mut weight) = (L::load(&Box8::EMPTY), 0);
             for bin in (1..grating.bins).rev() {
                 around = around.union(L::load(&boxes[bin]));
-                weight += weights[bin];
+                weight += (loads[bin] >> 32) as u32;
                 right[bin] = around.half_area() * weight as f32;
             }
             (around, weight) = (L::load(&Box8::EMPTY), 0);
             for bin in 1..grating.bins {
                 around = around.union(L::load(&boxes[bin - 1]));
-                weight += weights[bin - 1];
+                weight += (loads[bin - 1] >> 32) as u32;
                 let cost = around.half_area() * weight as f32 + right[bin];
                 if cost < best.0 {
                     best = (cost, axis, bin);

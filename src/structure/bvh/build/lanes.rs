@@ -115,8 +115,8 @@ pub(super) trait Lanes: Copy {
     /// Half the surface: `(x * y + y * z) + z * x`.
     unsafe fn half_area(self) -> f32;
     unsafe fn three(of: [f32; 3]) -> Self::Three;
-    /// `(at - from) * scale`, cut to whole numbers. In addition: they are within i32.
-    unsafe fn bins(at: Self::Three, from: Self::Three, scale: Self::Three) -> [i32; 4];
+    /// `(at - from) * scale`, cut to whole numbers of at most `last`. In addition: they are within i32.
+    unsafe fn bins(at: Self::Three, from: Self::Three, scale: Self::Three, last: i32) -> [i32; 4];
 }
 
 /// What every processor can do.
@@ -158,8 +158,8 @@ impl Lanes for Plain {
         of
     }
     #[inline(always)]
-    unsafe fn bins(at: [f32; 3], from: [f32; 3], scale: [f32; 3]) -> [i32; 4] {
-        let [x, y, z] = [0, 1, 2].map(|axis| ((at[axis] - from[axis]) * scale[axis]) as i32);
+    unsafe fn bins(at: [f32; 3], from: [f32; 3], scale: [f32; 3], last: i32) -> [i32; 4] {
+        let [x, y, z] = [0, 1, 2].map(|axis| (((at[axis] - from[axis]) * scale[axis]) as i32).min(last));
         [x, y, z, 0]
     }
 }
@@ -225,12 +225,13 @@ mod avx2 {
             unsafe { _mm_set_ps(0.0, of[2], of[1], of[0]) }
         }
         #[inline(always)]
-        unsafe fn bins(at: __m128, from: __m128, scale: __m128) -> [i32; 4] {
+        unsafe fn bins(at: __m128, from: __m128, scale: __m128, last: i32) -> [i32; 4] {
             let mut bins = [0; 4];
             // SAFETY: as above.
             unsafe {
                 let whole = _mm_cvttps_epi32(_mm_mul_ps(_mm_sub_ps(at, from), scale));
-                _mm_storeu_si128(bins.as_mut_ptr().cast(), whole);
+                let within = _mm_min_epi32(whole, _mm_set1_epi32(last));
+                _mm_storeu_si128(bins.as_mut_ptr().cast(), within);
             }
             bins
         }

@@ -22,8 +22,10 @@
 
 mod binned_sah;
 mod bins;
+mod curve;
 mod grow;
 mod lanes;
+mod morton;
 mod spatial_median;
 mod yard;
 
@@ -34,7 +36,9 @@ use glam::Vec3;
 pub use bins::MOST_BINS;
 
 /// The most nodes on a way from the root to a leaf.
-pub const MOST_DEPTH: usize = 96;
+pub const MOST_DEPTH: usize = 128;
+/// The most items in a cluster.
+const MOST_IN_CLUSTER: usize = 32;
 
 /// What is built over.
 #[derive(Clone, Copy, Debug)]
@@ -61,6 +65,8 @@ pub struct Settings {
     pub most_in_leaf: usize,
     /// The most items in a leaf of cuts that weigh nothing, from 1.
     pub median_leaf: usize,
+    /// The most items in a cluster of neighbours on a curve, 1 to 32.
+    pub cluster: usize,
     /// What a ray pays for an inner node, in a unit of one's choice.
     pub step_cost: f32,
     /// What a ray pays for a test against an item, in the same unit.
@@ -69,7 +75,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { bins: 16, most_in_leaf: 8, median_leaf: 2, step_cost: 1.0, item_cost: 1.0 }
+        Self { bins: 16, most_in_leaf: 8, median_leaf: 2, cluster: 8, step_cost: 1.0, item_cost: 1.0 }
     }
 }
 
@@ -158,6 +164,7 @@ macro_rules! builders {
 builders! {
     binned_sah => BinnedSah,
     spatial_median => SpatialMedian,
+    morton => Morton,
 }
 
 /// A builder with its settings and buffers.
@@ -198,6 +205,9 @@ impl Settings {
         let error = |setting, value: String, allowed: String| Err(BuildError::Setting { setting, value, allowed });
         if !(2..=MOST_BINS).contains(&self.bins) {
             return error("bins", self.bins.to_string(), format!("2 to {MOST_BINS}"));
+        }
+        if !(1..=MOST_IN_CLUSTER).contains(&self.cluster) {
+            return error("cluster", self.cluster.to_string(), format!("1 to {MOST_IN_CLUSTER}"));
         }
         for (setting, value) in [("most_in_leaf", self.most_in_leaf), ("median_leaf", self.median_leaf)] {
             if value == 0 {

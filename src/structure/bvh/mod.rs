@@ -1,10 +1,13 @@
 //! Bounding volume hierarchies for rays: binary ones as their builders make them, and wide ones that rays go through.
 
 mod binary;
+pub mod build;
+pub mod refit;
 mod traverse;
+mod walk;
 mod wide;
 
-pub use binary::{BinaryBvh, BinaryNode};
+pub use binary::{BinaryBvh, BinaryNode, BvhStatistics};
 pub use traverse::RayCounts;
 pub use wide::WideBvh;
 

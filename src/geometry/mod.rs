@@ -9,6 +9,7 @@ mod camera;
 pub mod contact;
 pub mod culling;
 mod frustum;
+pub mod hit;
 mod lanes;
 pub mod oracle;
 pub mod overlap;

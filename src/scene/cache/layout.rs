@@ -105,7 +105,7 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Option<(Vec<Stamp>, Scene)> {
     let roots = from.words()?;
     let nodes = from.list(Reader::node)?;
     let meshes = from.list(Reader::mesh)?;
-    from.rest.is_empty().then(|| (stamps, Scene { name: String::new(), nodes, meshes, roots }))
+    from.rest.is_empty().then(|| (stamps, Scene { nodes, meshes, roots, ..Scene::default() }))
 }
 
 /// What has not been read yet. Every length is held against it before memory is taken.

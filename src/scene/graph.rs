@@ -2,6 +2,7 @@
 
 use glam::{Affine3A, Vec3};
 
+use super::{Material, PointLight, Primitive, Shading, Texture};
 use crate::geometry::Aabb;
 
 /// A scene: a forest of nodes that place meshes in the world.
@@ -15,6 +16,16 @@ pub struct Scene {
     pub meshes: Vec<Mesh>,
     /// The nodes without a parent, by index.
     pub roots: Vec<u32>,
+    /// Spheres and cones, which hang on no node: only rays see them.
+    pub primitives: Vec<Primitive>,
+    /// What surfaces are made of.
+    pub materials: Vec<Material>,
+    /// Pictures laid on surfaces.
+    pub textures: Vec<Texture>,
+    /// Lights.
+    pub lights: Vec<PointLight>,
+    /// What a file asked for and could not be had, such as the picture of a texture: the scene is whole without.
+    pub warnings: Vec<String>,
 }
 
 /// A place in the scene graph.
@@ -43,13 +54,15 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// The smallest box around all vertices.
     pub bounds: Aabb,
+    /// What it has beside its shape, to be seen with.
+    pub shading: Shading,
 }
 
 impl Mesh {
-    /// A mesh with its bounds worked out.
+    /// A mesh with its bounds worked out, of no known material.
     pub fn new(name: impl Into<String>, positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let bounds = Aabb::of_points(positions.iter().copied());
-        Self { name: name.into(), positions, triangles, bounds }
+        Self { name: name.into(), positions, triangles, bounds, shading: Shading::default() }
     }
 }
 
@@ -83,6 +96,12 @@ impl Scene {
     pub fn add_mesh(&mut self, mesh: Mesh) -> u32 {
         self.meshes.push(mesh);
         self.meshes.len() as u32 - 1
+    }
+
+    /// Adds a material and returns its index.
+    pub fn add_material(&mut self, material: Material) -> u32 {
+        self.materials.push(material);
+        self.materials.len() as u32 - 1
     }
 
     /// All nodes, each after its parent, children in order: the order of a depth-first walk. Works for
@@ -123,7 +142,8 @@ impl Scene {
 
     /// The box around everything in the world, in metres; empty for an empty scene.
     pub fn bounds(&self) -> Aabb {
-        self.world_bounds().into_iter().fold(Aabb::EMPTY, Aabb::union)
+        let primitives = self.primitives.iter().map(|primitive| primitive.shape.bounds());
+        self.world_bounds().into_iter().chain(primitives).fold(Aabb::EMPTY, Aabb::union)
     }
 
     /// How many nodes place a mesh, and how many triangles that makes, shared meshes counted each time.

@@ -12,8 +12,10 @@ mod graph;
 mod movers;
 mod names;
 mod path;
+mod primitive;
 mod random;
 mod repeat;
+mod shading;
 mod source;
 mod validate;
 
@@ -25,4 +27,6 @@ pub use generate::{Aisles, GENERATORS, Generator, by_name};
 pub use graph::{Mesh, Node, Scene};
 pub use movers::Movers;
 pub use path::{CameraPath, PATHS, PathKind, Waypoint};
+pub use primitive::{Primitive, Shape};
 pub use random::SplitMix64;
+pub use shading::{Corners, Material, Materials, PointLight, Shading, Texture};

@@ -2,11 +2,11 @@
 
 use glam::{Affine3A, Vec3};
 
-use super::Scene;
+use super::{PointLight, Primitive, Scene};
 
 impl Scene {
     /// So many copies of the scene on a level grid as near to a square as can be, row after row. They
-    /// share their meshes. `spacing` is the way from copy to copy in units of the scene's greater extent
+    /// share their meshes, and bring their lights. `spacing` is the way from copy to copy in units of the scene's greater extent
     /// along x and z: at 1 they touch. It goes by another name, as it is another scene; one copy is the
     /// scene itself.
     pub fn repeated(self, copies: u32, spacing: f32) -> Self {
@@ -27,9 +27,23 @@ impl Scene {
                 node.children.iter_mut().for_each(|child| *child += first);
                 node
             }));
+            scene.primitives.extend(
+                self.primitives
+                    .iter()
+                    .map(|primitive| Primitive { shape: primitive.shape.moved(place), ..*primitive }),
+            );
+            let lights = self.lights.iter();
+            scene
+                .lights
+                .extend(lights.map(|light| PointLight { position: light.position + place, ..*light }));
         }
-        scene.meshes = self.meshes;
-        scene
+        Self {
+            meshes: self.meshes,
+            materials: self.materials,
+            textures: self.textures,
+            warnings: self.warnings,
+            ..scene
+        }
     }
 }
 

@@ -15,6 +15,7 @@ impl Scene {
     /// As [`Scene::validate`], naming `file` in errors.
     pub(super) fn validate_as(&self, file: &str) -> Result<(), SceneError> {
         self.check_meshes(file)?;
+        self.check_shading(file)?;
         self.check_nodes(file)?;
         self.check_forest(file)?;
         for (index, bounds) in self.world_bounds().into_iter().enumerate() {
@@ -51,6 +52,67 @@ impl Scene {
             }
         }
         Ok(())
+    }
+
+    /// Indices of materials, textures and corners in range; all numbers finite.
+    fn check_shading(&self, file: &str) -> Result<(), SceneError> {
+        let fail = |place: String, found: String, expected: String| {
+            Err(SceneError::malformed(file, place, found, expected))
+        };
+        let materials = self.materials.len();
+        for (index, mesh) in self.meshes.iter().enumerate() {
+            let (place, shading) = (format!("mesh {index} {:?}", mesh.name), &mesh.shading);
+            if let Some(material) =
+                shading.materials.greatest().filter(|number| *number as usize >= materials)
+            {
+                return fail(place, format!("material {material}"), format!("a material below {materials}"));
+            }
+            if let Some(normal) = shading.normals.values.iter().find(|normal| !normal.is_finite()) {
+                return fail(place, format!("normal {normal}"), "finite numbers".to_owned());
+            }
+            if let Some(at) = shading.coordinates.values.iter().find(|at| !at.is_finite()) {
+                return fail(place, format!("texture coordinate {at}"), "finite numbers".to_owned());
+            }
+        }
+        for (index, material) in self.materials.iter().enumerate() {
+            let place = format!("material {index} {:?}", material.name);
+            if let Some(texture) = material.texture.filter(|number| *number as usize >= self.textures.len()) {
+                return fail(
+                    place,
+                    format!("texture {texture}"),
+                    format!("one below {}", self.textures.len()),
+                );
+            }
+            let terms = [material.diffuse, material.highlight, material.mirror, material.transmission];
+            let finite = terms.iter().chain([&material.absorption]).all(|term| term.is_finite());
+            if !(finite && material.index > 0.0 && material.index.is_finite()) {
+                return fail(place, format!("{material:?}"), "finite numbers, an index above 0".to_owned());
+            }
+        }
+        for (index, texture) in self.textures.iter().enumerate() {
+            let pixels = texture.width as usize * texture.height as usize;
+            if pixels == 0 || texture.pixels.len() != pixels {
+                let found =
+                    format!("{} pixels for {} x {}", texture.pixels.len(), texture.width, texture.height);
+                return fail(format!("texture {index} {:?}", texture.name), found, "all of them".to_owned());
+            }
+        }
+        for (index, primitive) in self.primitives.iter().enumerate() {
+            let place = || format!("primitive {index}");
+            if !primitive.shape.is_sound() {
+                let found = format!("{:?}", primitive.shape);
+                return fail(place(), found, "finite numbers, radii not below 0".to_owned());
+            }
+            if let Some(material) = primitive.material.filter(|number| *number as usize >= materials) {
+                return fail(place(), format!("material {material}"), format!("one below {materials}"));
+            }
+        }
+        match self.lights.iter().position(|light| !(light.position.is_finite() && light.colour.is_finite())) {
+            Some(bad) => {
+                fail(format!("light {bad}"), format!("{:?}", self.lights[bad]), "finite numbers".to_owned())
+            }
+            None => Ok(()),
+        }
     }
 
     fn check_nodes(&self, file: &str) -> Result<(), SceneError> {

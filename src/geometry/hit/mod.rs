@@ -1,5 +1,7 @@
-//! Where rays meet triangles: a fast test and a watertight one, of one ray with several triangles or of several rays
-//! with one, by the same code over [`Lanes`]; scalar code and every vector unit answer the same bit for bit.
+//! Where rays meet shapes: spheres, cones, triangles.
+//!
+//! Of triangles there is a fast test and a watertight one, of one ray with several or of several rays with one, by the
+//! same code over [`Lanes`]; scalar code and every vector unit answer the same bit for bit.
 //!
 //! A hit lies within its triangle's own box, as the box test of a hierarchy's nodes ([`slab`]) sees it: `t` is moved
 //! there, and what has no point in common with that box is no hit. Each step of that test keeps the order of its
@@ -9,13 +11,17 @@
 //! No bound is absolute: lengths are counted in the scene's own ([`Scale`]).
 
 mod aim;
+mod cone;
 mod fast;
 mod scale;
 mod slab;
+mod sphere;
 mod watertight;
 
+pub use cone::{Cone, cone};
 pub use fast::Fast;
 pub use scale::Scale;
+pub use sphere::sphere;
 pub use watertight::Watertight;
 
 pub(crate) use aim::{Aim, Beam};
@@ -97,6 +103,13 @@ unsafe fn sides<L: Lanes>(beam: &Beam<L>, triangles: &impl Corners<L>, axis: usi
         let (least, greatest) = (a.min(b).min(c), a.max(b).max(c));
         if beam.rises[axis] { [least, greatest] } else { [greatest, least] }
     }
+}
+
+/// The lesser of two roots that lies on the ray, rounded to f32.
+fn first_within(ray: &super::Ray, roots: [f64; 2]) -> Option<f32> {
+    let [a, b] = roots.map(|t| t as f32);
+    let within = |t: &f32| *t >= ray.near && *t <= ray.far;
+    [a.min(b), a.max(b)].into_iter().find(within)
 }
 
 #[cfg(test)]

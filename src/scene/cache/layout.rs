@@ -7,7 +7,8 @@
 //! stamps:  name, size u64, seconds u64 and nanoseconds u32 since 1970
 //! roots u32
 //! nodes:   name, parent u32, mesh u32, children u32, transform 12 f32
-//! meshes:  name, positions 3 f32, triangles 3 u32
+//! meshes:  name, positions 3 f32, triangles 3 u32, shading (`look.rs`)
+//! materials, textures, lights, primitives, warnings (`look.rs`)
 //! checksum u32 (CRC-32 of all before it)
 //! ```
 
@@ -16,12 +17,13 @@ use std::time::{Duration, SystemTime};
 
 use glam::{Affine3A, Vec3};
 
+use super::look;
 use crate::scene::source::Stamp;
 use crate::scene::{Mesh, Node, Scene};
 
 const MAGIC: &[u8] = b"apportion scene\n";
 /// To be raised whenever this layout changes, or a reader comes to read a file otherwise than before.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Stands for no node and for no mesh.
 const NONE: u32 = u32::MAX;
 
@@ -59,24 +61,26 @@ pub(super) fn encode(path: &Path, stamps: &[Stamp], scene: &Scene) -> Option<Vec
         for triangle in &mesh.triangles {
             out.extend_from_slice(&bytes_of(triangle.map(u32::to_le_bytes)));
         }
+        look::put_shading(&mut out, &mesh.shading)?;
     }
+    look::put_scene(&mut out, scene)?;
     let checksum = crc32fast::hash(&out);
     out.extend(checksum.to_le_bytes());
     Some(out)
 }
 
-fn put_count(out: &mut Vec<u8>, count: usize) -> Option<()> {
+pub(super) fn put_count(out: &mut Vec<u8>, count: usize) -> Option<()> {
     out.extend(u32::try_from(count).ok()?.to_le_bytes());
     Some(())
 }
 
-fn put(out: &mut Vec<u8>, bytes: impl ExactSizeIterator<Item = u8>) -> Option<()> {
+pub(super) fn put(out: &mut Vec<u8>, bytes: impl ExactSizeIterator<Item = u8>) -> Option<()> {
     put_count(out, bytes.len())?;
     out.extend(bytes);
     Some(())
 }
 
-fn put_words(out: &mut Vec<u8>, words: &[u32]) -> Option<()> {
+pub(super) fn put_words(out: &mut Vec<u8>, words: &[u32]) -> Option<()> {
     put_count(out, words.len())?;
     out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
     Some(())
@@ -105,27 +109,38 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Option<(Vec<Stamp>, Scene)> {
     let roots = from.words()?;
     let nodes = from.list(Reader::node)?;
     let meshes = from.list(Reader::mesh)?;
-    from.rest.is_empty().then(|| (stamps, Scene { name: String::new(), nodes, meshes, roots }))
+    let scene = look::read_scene(&mut from, Scene { nodes, meshes, roots, ..Scene::default() })?;
+    from.rest.is_empty().then_some((stamps, scene))
 }
 
 /// What has not been read yet. Every length is held against it before memory is taken.
-struct Reader<'a> {
+pub(super) struct Reader<'a> {
     rest: &'a [u8],
 }
 
 impl<'a> Reader<'a> {
-    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
+    /// A number of 32 bits, any.
+    pub(super) fn number(&mut self) -> Option<f32> {
+        self.array().map(f32::from_le_bytes)
+    }
+
+    /// Three of them.
+    pub(super) fn vector(&mut self) -> Option<Vec3> {
+        Some(Vec3::new(self.number()?, self.number()?, self.number()?))
+    }
+
+    pub(super) fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
         let (array, rest) = self.rest.split_first_chunk()?;
         self.rest = rest;
         Some(*array)
     }
 
-    fn word(&mut self) -> Option<u32> {
+    pub(super) fn word(&mut self) -> Option<u32> {
         self.array().map(u32::from_le_bytes)
     }
 
     /// A list of items of `N` bytes.
-    fn arrays<const N: usize>(&mut self) -> Option<&'a [[u8; N]]> {
+    pub(super) fn arrays<const N: usize>(&mut self) -> Option<&'a [[u8; N]]> {
         let count = self.word()? as usize;
         let (bytes, rest) = self.rest.split_at_checked(count.checked_mul(N)?)?;
         self.rest = rest;
@@ -136,16 +151,16 @@ impl<'a> Reader<'a> {
         self.arrays::<1>().map(<[[u8; 1]]>::as_flattened)
     }
 
-    fn text(&mut self) -> Option<String> {
+    pub(super) fn text(&mut self) -> Option<String> {
         String::from_utf8(self.bytes()?.to_vec()).ok()
     }
 
-    fn words(&mut self) -> Option<Vec<u32>> {
+    pub(super) fn words(&mut self) -> Option<Vec<u32>> {
         Some(self.arrays()?.iter().map(|word| u32::from_le_bytes(*word)).collect())
     }
 
     /// A list of items of different sizes, each at least as long as a count.
-    fn list<T>(&mut self, item: impl Fn(&mut Self) -> Option<T>) -> Option<Vec<T>> {
+    pub(super) fn list<T>(&mut self, item: impl Fn(&mut Self) -> Option<T>) -> Option<Vec<T>> {
         let count = self.word()? as usize;
         let mut list = Vec::with_capacity(count.min(self.rest.len() / size_of::<u32>()));
         for _ in 0..count {
@@ -180,7 +195,8 @@ impl<'a> Reader<'a> {
         let positions = self.arrays()?.iter().map(|bytes| Vec3::from(triple(bytes).map(f32::from_le_bytes)));
         let positions = positions.collect();
         let triangles = self.arrays()?.iter().map(|bytes| triple(bytes).map(u32::from_le_bytes)).collect();
-        Some(Mesh::new(name, positions, triangles))
+        let shading = look::read_shading(self)?;
+        Some(Mesh { shading, ..Mesh::new(name, positions, triangles) })
     }
 }
 

@@ -26,6 +26,7 @@ use super::source::Stamp;
 use super::{Scene, SceneError};
 
 mod layout;
+mod look;
 
 /// The variable that names a folder for the cache, or switches it off.
 const VARIABLE: &str = "APPORTION_CACHE";

@@ -1,16 +1,17 @@
 //! glTF 2.0, as text or binary: the node hierarchy and the triangles; nodes that share a mesh go on
 //! sharing it. Of a mesh's primitives those made of triangles (lists, strips, fans) become one mesh;
-//! points and lines have no surface and are left out. Materials, skins, morphs and animation are not
-//! read. Quantised, sparse or compressed vertices are refused.
+//! points and lines have no surface and are left out. Normals, the first texture coordinates and
+//! materials are read; skins, morphs and animation are not. Quantised, sparse or compressed vertices are refused.
 
 use std::collections::HashMap;
 
-use glam::{Affine3A, Mat4, Vec3};
+use glam::{Affine3A, Mat4, Vec2, Vec3};
 use gltf::mesh::Mode;
 
 use super::super::source::Source;
-use super::super::{Mesh, Scene, SceneError};
+use super::super::{Corners, Materials, Mesh, Scene, SceneError, Shading};
 use super::gltf_buffers::Buffers;
+use super::gltf_look;
 
 /// Reads the default scene of a document, or its first, or, if it declares none, all its nodes.
 pub(super) fn load(source: &Source) -> Result<Scene, SceneError> {
@@ -26,8 +27,10 @@ pub(super) fn load(source: &Source) -> Result<Scene, SceneError> {
     let document = gltf::Document::from_json(json).map_err(invalid)?;
     let buffers = Buffers::read(source, &document, gltf.blob)?;
     let mut scene = Scene::new(file);
+    gltf_look::read(source, &document, &buffers, &mut scene);
     for mesh in document.meshes() {
-        scene.meshes.push(read_mesh(file, &buffers, &mesh)?);
+        let mesh = read_mesh(file, &buffers, &mesh, &mut scene.warnings)?;
+        scene.meshes.push(mesh);
     }
     add_nodes(file, &document, &mut scene)?;
     Ok(scene)
@@ -67,10 +70,16 @@ fn check_positions(file: &str, json: &gltf::json::Root) -> Result<(), SceneError
     Ok(())
 }
 
-fn read_mesh(file: &str, buffers: &Buffers<'_>, mesh: &gltf::Mesh<'_>) -> Result<Mesh, SceneError> {
+fn read_mesh(
+    file: &str,
+    buffers: &Buffers<'_>,
+    mesh: &gltf::Mesh<'_>,
+    warnings: &mut Vec<String>,
+) -> Result<Mesh, SceneError> {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    let (mut normals, mut coordinates, mut materials) = (Vec::new(), Vec::new(), Vec::new());
     // Primitives often share their vertices, one for each material.
-    let mut first_of: HashMap<usize, (u32, usize)> = HashMap::new();
+    let mut first_of: HashMap<[Option<usize>; 3], (u32, usize)> = HashMap::new();
     for primitive in mesh.primitives() {
         let place = || {
             format!("mesh {} {:?} primitive {}", mesh.index(), mesh.name().unwrap_or(""), primitive.index())
@@ -81,13 +90,24 @@ fn read_mesh(file: &str, buffers: &Buffers<'_>, mesh: &gltf::Mesh<'_>) -> Result
         let accessor = primitive
             .get(&gltf::Semantic::Positions)
             .ok_or_else(|| SceneError::malformed(file, place(), "no POSITION", "one"))?;
-        let (first, count) = match first_of.get(&accessor.index()) {
+        let (normal, coordinate) =
+            (primitive.get(&gltf::Semantic::Normals), primitive.get(&gltf::Semantic::TexCoords(0)));
+        let key = [
+            Some(accessor.index()),
+            normal.as_ref().map(gltf::Accessor::index),
+            coordinate.as_ref().map(gltf::Accessor::index),
+        ];
+        let (first, count) = match first_of.get(&key) {
             Some(shared) => *shared,
             None => {
                 let vertices = buffers.positions(&accessor)?;
                 let placed = (positions.len() as u32, vertices.len());
                 positions.extend(vertices.into_iter().map(Vec3::from));
-                first_of.insert(accessor.index(), placed);
+                let read = normal.map(|normal| buffers.positions(&normal));
+                extend(&mut normals, read, positions.len(), placed.1, warnings);
+                let read = coordinate.map(|coordinate| buffers.coordinates(&coordinate));
+                extend(&mut coordinates, read, positions.len(), placed.1, warnings);
+                first_of.insert(key, placed);
                 placed
             }
         };
@@ -104,8 +124,42 @@ fn read_mesh(file: &str, buffers: &Buffers<'_>, mesh: &gltf::Mesh<'_>) -> Result
             return Err(SceneError::malformed(file, place(), found, "a multiple of three"));
         }
         triangles.extend(assemble(primitive.mode(), &indices).map(|triangle| triangle.map(|i| i + first)));
+        let material = primitive.material().index().map_or(u32::MAX, |material| material as u32);
+        materials.resize(triangles.len(), material);
     }
-    Ok(Mesh::new(mesh.name().unwrap_or(""), positions, triangles))
+    let corners = |values: Vec<[f32; 3]>| Corners::of_vertices(values.into_iter().map(Vec3::from).collect());
+    let shading = Shading {
+        materials: Materials::from_each(materials),
+        normals: corners(normals),
+        coordinates: Corners::of_vertices(coordinates.into_iter().map(Vec2::from).collect()),
+    };
+    Ok(Mesh { shading, ..Mesh::new(mesh.name().unwrap_or(""), positions, triangles) })
+}
+
+/// Adds what shading knows of the last `count` of `vertices` vertices: 0 for those of which nothing is known, and none at
+/// all as long as nothing is known of any. What cannot be read is a warning: the shape is whole without it.
+fn extend<const N: usize>(
+    values: &mut Vec<[f32; N]>,
+    read: Option<Result<Vec<[f32; N]>, SceneError>>,
+    vertices: usize,
+    count: usize,
+    warnings: &mut Vec<String>,
+) {
+    match read {
+        Some(Ok(read)) if read.len() == count => {
+            values.resize(vertices - count, [0.0; N]);
+            let is_sound = |value: &[f32; N]| value.iter().all(|number| number.is_finite());
+            values.extend(read.into_iter().map(|value| if is_sound(&value) { value } else { [0.0; N] }));
+        }
+        Some(Ok(read)) => {
+            warnings.push(format!("{} normals or texture coordinates for {count} vertices", read.len()))
+        }
+        Some(Err(error)) => warnings.push(error.to_string()),
+        None => {}
+    }
+    if !values.is_empty() {
+        values.resize(vertices, [0.0; N]);
+    }
 }
 
 /// Triangles of a list, a strip or a fan, all wound the same way (glTF 2.0 sec. 3.7.2.1).

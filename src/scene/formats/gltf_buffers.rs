@@ -62,6 +62,12 @@ impl<'a> Buffers<'a> {
         Ok(Self { file, data, left: Cell::new(all.saturating_mul(MOST_TIMES)) })
     }
 
+    /// The bytes of a view; none if it lies beyond its buffer.
+    pub(super) fn view(&self, view: &gltf::buffer::View<'_>) -> Option<&[u8]> {
+        let end = view.offset().checked_add(view.length())?;
+        self.data[view.buffer().index()].get(view.offset()..end)
+    }
+
     /// The items of an accessor, each handed to `item` as its bytes.
     fn items<T>(
         &self,
@@ -75,11 +81,8 @@ impl<'a> Buffers<'a> {
             return Err(fail("sparse values", "values in full"));
         }
         let view = accessor.view().ok_or_else(|| fail("no buffer view", "one"))?;
-        let bytes = view
-            .offset()
-            .checked_add(view.length())
-            .and_then(|end| self.data[view.buffer().index()].get(view.offset()..end))
-            .ok_or_else(|| fail("a buffer view past the end of its buffer", "one within"))?;
+        let bytes =
+            self.view(&view).ok_or_else(|| fail("a buffer view past the end of its buffer", "one within"))?;
         let (size, count) = (accessor.size(), accessor.count());
         let stride = view.stride().unwrap_or(size);
         let needed = count.checked_sub(1).map_or(Some(0), |last| {
@@ -97,7 +100,21 @@ impl<'a> Buffers<'a> {
         Ok((0..count).map(|i| item(&bytes[start(i)..start(i) + size])).collect())
     }
 
-    /// Vertex positions.
+    /// Texture coordinates: floats, or shares of the greatest number of 8 or 16 bits.
+    pub(super) fn coordinates(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<[f32; 2]>, SceneError> {
+        let short = |b: &[u8], i: usize| f32::from(u16::from_le_bytes([b[i], b[i + 1]])) / 65_535.0;
+        let number = |b: &[u8], i: usize| f32::from_le_bytes([b[i], b[i + 1], b[i + 2], b[i + 3]]);
+        match (accessor.data_type(), accessor.dimensions()) {
+            (DataType::F32, Dimensions::Vec2) => self.items(accessor, |b| [number(b, 0), number(b, 4)]),
+            (DataType::U16, Dimensions::Vec2) => self.items(accessor, |b| [short(b, 0), short(b, 2)]),
+            (DataType::U8, Dimensions::Vec2) => {
+                self.items(accessor, |b| [f32::from(b[0]) / 255.0, f32::from(b[1]) / 255.0])
+            }
+            _ => Err(self.wrong_kind(accessor, "texture coordinates of two floats or shares")),
+        }
+    }
+
+    /// Three floats an item: vertex positions, or normals.
     pub(super) fn positions(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<[f32; 3]>, SceneError> {
         let kind = (accessor.data_type(), accessor.dimensions());
         if kind != (DataType::F32, Dimensions::Vec3) {

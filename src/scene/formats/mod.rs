@@ -8,13 +8,17 @@ use super::{Scene, SceneError};
 mod base64;
 mod gltf;
 mod gltf_buffers;
+mod gltf_look;
+mod mtl;
 mod obj;
 mod obj_check;
+mod obj_shading;
 mod ply;
 mod ply_body;
 mod ply_header;
 mod stl;
 mod stl_text;
+mod texture;
 mod urdf;
 mod urdf_shapes;
 mod urdf_xml;
@@ -31,10 +35,10 @@ pub struct Format {
 /// All formats. Each may be packed, with `.gz` after its extension. A reader that comes to read something
 /// otherwise than before needs a new version of the cache as well (`cache/layout.rs`).
 pub const FORMATS: &[Format] = &[
-    Format { extension: "gltf", about: "glTF 2.0, buffers beside or inside", load: gltf::load },
+    Format { extension: "gltf", about: "glTF 2.0, buffers and pictures beside or inside", load: gltf::load },
     Format { extension: "glb", about: "glTF 2.0, binary", load: gltf::load },
-    Format { extension: "obj", about: "Wavefront OBJ, geometry only", load: obj::load },
-    Format { extension: "ply", about: "Stanford PLY, text or binary, geometry only", load: ply::load },
+    Format { extension: "obj", about: "Wavefront OBJ, with its MTL materials and textures", load: obj::load },
+    Format { extension: "ply", about: "Stanford PLY, text or binary, with normals", load: ply::load },
     Format { extension: "stl", about: "stereolithography, text or binary, welded", load: stl::load },
     Format {
         extension: "urdf",

@@ -5,8 +5,14 @@ use super::ply_header::{Encoding, Fault, Kind};
 
 /// What follows the header.
 pub(super) trait Body {
+    /// The next number, whatever it is, rounded to f32.
+    fn number(&mut self, kind: Kind) -> Result<f32, Fault>;
     /// The next number as a coordinate: finite, rounded to f32.
-    fn coordinate(&mut self, kind: Kind) -> Result<f32, Fault>;
+    #[inline]
+    fn coordinate(&mut self, kind: Kind) -> Result<f32, Fault> {
+        let number = self.number(kind)?;
+        if number.is_finite() { Ok(number) } else { Err((number.to_string(), FINITE.to_string())) }
+    }
     /// The next number as a count or an index.
     fn whole(&mut self, kind: Kind) -> Result<u32, Fault>;
     /// Passes over numbers.
@@ -49,6 +55,12 @@ impl<'a> Text<'a> {
 }
 
 impl Body for Text<'_> {
+    fn number(&mut self, _: Kind) -> Result<f32, Fault> {
+        let word = self.needed("a number")?;
+        let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+        number.ok_or_else(|| (shown(word), FINITE.to_string()))
+    }
+
     fn coordinate(&mut self, _: Kind) -> Result<f32, Fault> {
         let word = self.needed("a coordinate")?;
         let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
@@ -138,8 +150,8 @@ impl<'a> Binary<'a> {
 
 impl Body for Binary<'_> {
     #[inline]
-    fn coordinate(&mut self, kind: Kind) -> Result<f32, Fault> {
-        let number = match kind {
+    fn number(&mut self, kind: Kind) -> Result<f32, Fault> {
+        Ok(match kind {
             Kind::I8 => i8::from_le_bytes(self.array()?).into(),
             Kind::U8 => u8::from_le_bytes(self.array()?).into(),
             Kind::I16 => i16::from_le_bytes(self.array()?).into(),
@@ -148,8 +160,7 @@ impl Body for Binary<'_> {
             Kind::U32 => u32::from_le_bytes(self.array()?) as f32,
             Kind::F32 => f32::from_le_bytes(self.array()?),
             Kind::F64 => f64::from_le_bytes(self.array()?) as f32,
-        };
-        if number.is_finite() { Ok(number) } else { Err((number.to_string(), FINITE.to_string())) }
+        })
     }
 
     #[inline]

@@ -14,12 +14,14 @@ use std::fmt;
 use std::sync::atomic::Ordering;
 
 pub mod handoff;
+mod monitor;
 mod seats;
 mod shared;
 pub mod simulated;
 pub mod threads;
 mod trace;
 
+pub use monitor::Monitor;
 pub use seats::{Claim, Seats};
 pub use shared::{Arena, Layout, Shared};
 pub use simulated::Simulated;
@@ -41,6 +43,13 @@ pub trait Word: Send + Sync + Sized {
     /// Subtracts from the word, wrapping, and returns what it held.
     fn fetch_sub(&self, value: u64, order: Ordering) -> u64 {
         self.fetch_add(value.wrapping_neg(), order)
+    }
+    /// As [`Word::fetch_add`], carried out by the memory that holds the word where the machine can do that: no
+    /// copy of its line travels, so a word that everybody draws from is not handed from cache to cache. Such a word
+    /// should lie on lines of its own and be read seldom.
+    #[inline]
+    fn fetch_add_at_memory(&self, value: u64, order: Ordering) -> u64 {
+        self.fetch_add(value, order)
     }
     /// Writes `new` if the word holds `current`.
     ///
@@ -177,6 +186,8 @@ pub trait Machine: Sync {
     type Word: Word;
     /// Its plain shared storage.
     type Slot<T: Copy + Send>: Slot<T>;
+    /// What its operating system offers to sleep on.
+    type Monitor: Monitor<Self::Processor>;
     /// What a worker of it holds.
     type Processor: Processor<Word = Self::Word>;
 
@@ -191,6 +202,9 @@ pub trait Machine: Sync {
     /// Allocates `n` values in the machine's shared memory, laid out as asked. Addresses are real:
     /// they decide which coherence line a value lies in.
     fn alloc<T: Send + Sync>(&self, n: usize, layout: Layout, make: impl FnMut(usize) -> T) -> Shared<T>;
+    /// A monitor with the value 0; none where nobody has said how long this machine's system takes to wake a
+    /// sleeper.
+    fn monitor(&self) -> Option<Self::Monitor>;
     /// Runs `body` once on each of `processors` processors, this thread being processor 0, and
     /// returns what they returned, in order.
     ///

@@ -12,7 +12,8 @@ use std::sync::atomic::Ordering;
 pub enum CounterKind {
     /// Under a lock, as in the paper (section 3.2).
     Locked(LockKind),
-    /// By one fetch-and-add, as its footnote 1 suggests.
+    /// By one fetch-and-add, as its footnote 1 suggests: at memory where the machine can, as Parker et al. 1999
+    /// (sec. 2.1) have it.
     FetchAdd,
 }
 
@@ -48,7 +49,7 @@ impl<M: Machine> Counter<M> {
                 drawn
             }
             // ORDERING: Relaxed: the number itself is all that is taken; tasks travel through queues.
-            CounterKind::FetchAdd => self.count().fetch_add(1, Ordering::Relaxed),
+            CounterKind::FetchAdd => self.count().fetch_add_at_memory(1, Ordering::Relaxed),
         }
     }
 

@@ -21,3 +21,4 @@ mod structure;
 mod tiles;
 mod trace;
 mod trace_file;
+mod virtual_time;

@@ -1,9 +1,10 @@
 //! A machine of loom's words and threads.
 
 use crate::mutant::{self, Mutant};
-use apportion::machine::{Arena, Layout, Machine, Processor, RunError, Shared, Slot, Word};
+use apportion::machine::{Arena, Layout, Machine, Monitor, Processor, RunError, Shared, Slot, Word};
 use loom::cell::UnsafeCell;
 use loom::sync::atomic::AtomicU64;
+use loom::sync::{Condvar, Mutex};
 use std::alloc::{Layout as Bytes, alloc, dealloc, handle_alloc_error};
 use std::cell::Cell;
 use std::ptr::NonNull;
@@ -219,6 +220,35 @@ impl Processor for LoomProcessor {
     }
 }
 
+/// A value under loom's mutex, with its condition variable.
+#[derive(Debug)]
+pub(crate) struct LoomMonitor {
+    value: Mutex<u64>,
+    changed: Condvar,
+}
+
+impl Monitor<LoomProcessor> for LoomMonitor {
+    fn pass(&self, _: &LoomProcessor, change: impl FnOnce(u64) -> u64, may_go: impl Fn(u64, u64) -> bool) {
+        if is_failing() {
+            return;
+        }
+        let mut value = self.value.lock().expect("a panic ends the model");
+        let before = *value;
+        *value = change(before);
+        if may_go(before, *value) {
+            self.changed.notify_all();
+            return;
+        }
+        while !mutant::is(Mutant::NoWait) && !may_go(before, *value) {
+            value = self.changed.wait(value).expect("a panic ends the model");
+        }
+    }
+
+    fn reset(&self) {
+        *self.value.lock().expect("a panic ends the model") = 0;
+    }
+}
+
 struct Heap;
 
 impl Arena for Heap {
@@ -251,6 +281,7 @@ impl<L> Results<L> {
 impl Machine for Loom {
     type Word = LoomWord;
     type Slot<T: Copy + Send> = LoomSlot<T>;
+    type Monitor = LoomMonitor;
     type Processor = LoomProcessor;
 
     fn name(&self) -> &str {
@@ -268,6 +299,10 @@ impl Machine for Loom {
         });
         FIRST_OF_TWO.set(false);
         shared
+    }
+
+    fn monitor(&self) -> Option<LoomMonitor> {
+        Some(LoomMonitor { value: Mutex::new(0), changed: Condvar::new() })
     }
 
     fn run<L: Send>(

@@ -6,6 +6,7 @@
 //!
 //! loom takes SeqCst accesses for AcqRel, but SeqCst fences for what they are.
 
+mod barriers;
 mod first_contact;
 mod handoff;
 mod locks;

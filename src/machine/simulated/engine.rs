@@ -31,6 +31,8 @@ pub(super) enum Kind {
     Load,
     Store,
     Atomic,
+    /// An atomic operation carried out by the memory that holds the word.
+    AtMemory,
 }
 
 /// What the processors of a run did, summed over them.
@@ -140,13 +142,15 @@ impl Engine {
     fn access(&mut self, line: u32, kind: Kind) {
         let p = self.current;
         let mut clock = self.clocks[p];
+        // A machine whose memories cannot do it has the line brought.
+        let kind = if kind == Kind::AtMemory && self.model.network.at_memory == 0 { Kind::Atomic } else { kind };
         self.statistics.accesses += 1;
         let stores = &mut self.stores[p];
         while stores.front().is_some_and(|&done| done <= clock) {
             stores.pop_front();
         }
         let access = if kind == Kind::Load { Access::Read } else { Access::Write };
-        if kind == Kind::Atomic {
+        if kind == Kind::Atomic || kind == Kind::AtMemory {
             // An atomic access waits until all stores before it are visible.
             clock = clock.max(stores.back().copied().unwrap_or(0));
             stores.clear();
@@ -161,9 +165,13 @@ impl Engine {
             }
             _ => 0,
         };
-        let served = self.coherence.access(&self.model, (p as u16, line), access, clock, after);
+        let served = if kind == Kind::AtMemory {
+            self.coherence.at_memory(&self.model, (p as u16, line), clock)
+        } else {
+            self.coherence.access(&self.model, (p as u16, line), access, clock, after)
+        };
         match kind {
-            Kind::Load => clock = served.done,
+            Kind::Load | Kind::AtMemory => clock = served.done,
             Kind::Atomic => clock = served.done + self.model.atomic,
             Kind::Store => {
                 let stores = &mut self.stores[p];

@@ -1,15 +1,18 @@
 //! Simulated multiprocessors: virtual processors in virtual time, shared accesses billed by a
 //! cache-coherence and bus model. Execution-driven and exact: the scheme's own code runs.
 //!
-//! What is modelled: MOESI coherence by line of the program's real layout, one split-transaction bus,
-//! two direct-mapped cache levels, an in-order store buffer, atomics and fences, busy waiting on
-//! cached copies. What is not: instruction fetch, branch prediction, TLBs, bank conflicts, the
-//! operating system. Private work takes what the job charges for it.
+//! What is modelled: MOESI coherence by line of the program's real layout, one split-transaction bus or nodes in
+//! a network with a directory each, two direct-mapped cache levels, an in-order store buffer, atomics (at memory
+//! too) and fences, busy waiting on cached copies, the time the operating system takes to wake a sleeper. What is
+//! not: instruction fetch, branch prediction, TLBs, bank conflicts, links of the network that are busy, the
+//! operating system otherwise. Private work takes what the job charges for it.
 
 mod arena;
 mod engine;
 mod memory;
 mod model;
+mod monitor;
+mod network;
 mod trace;
 mod word;
 
@@ -20,6 +23,8 @@ use corosensei::{Coroutine, CoroutineResult};
 pub use engine::Statistics;
 use engine::{Engine, Installed};
 pub use model::{Model, ModelError};
+pub use monitor::SimulatedMonitor;
+pub use network::{Home, Network, Topology};
 use std::cell::UnsafeCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::Ordering;
@@ -197,6 +202,7 @@ impl Processor for VirtualProcessor {
 impl Machine for Simulated {
     type Word = SimulatedWord;
     type Slot<T: Copy + Send> = SimulatedSlot<T>;
+    type Monitor = SimulatedMonitor;
     type Processor = VirtualProcessor;
 
     fn name(&self) -> &str {
@@ -209,6 +215,11 @@ impl Machine for Simulated {
 
     fn alloc<T: Send + Sync>(&self, n: usize, layout: Layout, make: impl FnMut(usize) -> T) -> Shared<T> {
         Shared::new(self.memory.clone(), n, layout, make)
+    }
+
+    fn monitor(&self) -> Option<SimulatedMonitor> {
+        let words = || self.alloc(3, Layout::Padded, |_| SimulatedWord::new(0));
+        (self.model.wake > 0).then(|| SimulatedMonitor::new(words(), self.model.wake))
     }
 
     fn run<L: Send>(

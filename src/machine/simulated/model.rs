@@ -1,9 +1,10 @@
 //! The constants of a simulated multiprocessor, and the presets shipped as data.
 
+use super::network::Network;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// A bus-based cache-coherent multiprocessor. Times are cycles of its own clock.
+/// A cache-coherent multiprocessor, on one bus or with its nodes in a network. Times are cycles of its own clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
@@ -27,13 +28,13 @@ pub struct Model {
     pub l2_lines: usize,
     /// Cycles of a second-level hit.
     pub l2_hit: u64,
-    /// Cycles of a miss that memory serves.
+    /// Cycles of a miss that memory serves, in one's own node where there is a [`Network`].
     pub memory: u64,
     /// Cycles of a miss that another processor's cache serves.
     pub cache_to_cache: u64,
     /// Cycles to invalidate the other copies of a line one holds.
     pub upgrade: u64,
-    /// Cycles for which one transaction occupies the bus.
+    /// Cycles for which one transaction occupies the bus, or the memory of the line's home node.
     pub bus_occupancy: u64,
     /// Extra cycles of an atomic read-modify-write.
     pub atomic: u64,
@@ -62,9 +63,16 @@ pub struct Model {
     /// Cycles from the last helper's finish to the end of the run, beyond what the finishing word takes.
     #[serde(default)]
     pub finish: u64,
+    /// Cycles the operating system takes to wake one sleeper, while others who are to be woken wait. 0: nobody has
+    /// said, and the machine has no [`Monitor`](crate::machine::Monitor).
+    #[serde(default)]
+    pub wake: u64,
     /// How much slower this machine is than the host on which node costs were measured, in cycles
     /// of this machine for a nanosecond measured there. See `job::cull::costs`.
     pub cycles_per_measured_ns: f64,
+    /// Where memory lies; without it there is one bus.
+    #[serde(default)]
+    pub network: Network,
 }
 
 /// Why a machine description cannot be used.
@@ -112,6 +120,8 @@ pub enum ModelError {
 const PRESETS: &[(&str, &str)] = &[
     ("e4000", include_str!("presets/e4000.toml")),
     ("pentium3x2", include_str!("presets/pentium3x2.toml")),
+    ("origin2000", include_str!("presets/origin2000.toml")),
+    ("superdome1024", include_str!("presets/superdome1024.toml")),
     ("host", include_str!("presets/host.toml")),
 ];
 
@@ -150,15 +160,22 @@ impl Model {
         Ok(model)
     }
 
-    /// Sets one constant by its name, as a sweep over machine settings does.
+    /// Sets one constant by its name (`memory`, `network.hop`), as a sweep over machine settings does.
     ///
     /// # Errors
     /// [`ModelError::Parse`] for an unknown constant, [`ModelError::Value`] for a senseless value.
     pub fn set(&mut self, key: &str, value: f64) -> Result<(), ModelError> {
         let file = format!("machine `{}`", self.name);
-        let mut table = toml::Table::try_from(&*self).expect("a model is a table");
+        let mut whole_table = toml::Table::try_from(&*self).expect("a model is a table");
         let whole = value.fract() == 0.0 && value.abs() < 1e15;
-        let entry = match table.get(key) {
+        let (table, last) = match key.strip_prefix("network.") {
+            Some(last) => match whole_table.get_mut("network") {
+                Some(toml::Value::Table(network)) => (network, last),
+                _ => unreachable!("a model has a network"),
+            },
+            None => (&mut whole_table, key),
+        };
+        let entry = match table.get(last) {
             Some(toml::Value::Integer(_)) if whole => toml::Value::Integer(value as i64),
             Some(toml::Value::Integer(_)) => {
                 let message = format!("`{key}` = {value}: expected a whole number");
@@ -166,14 +183,15 @@ impl Model {
             }
             Some(toml::Value::Float(_)) => toml::Value::Float(value),
             _ => {
-                let keys = table.iter().filter(|(_, v)| !v.is_str()).map(|(k, _)| k.as_str());
+                let numbers = |value: &toml::Value| value.is_integer() || value.is_float();
+                let keys = table.iter().filter(|(_, v)| numbers(v)).map(|(k, _)| k.as_str());
                 let keys = keys.collect::<Vec<_>>().join(", ");
                 let message = format!("no constant `{key}`; there are: {keys}");
                 return Err(ModelError::Parse { file, message });
             }
         };
-        table.insert(key.to_owned(), entry);
-        let model = table.try_into::<Model>();
+        table.insert(last.to_owned(), entry);
+        let model = whole_table.try_into::<Model>();
         *self = model.map_err(|e| ModelError::Parse { file: file.clone(), message: e.to_string() })?;
         self.check(&file)
     }
@@ -198,7 +216,7 @@ impl Model {
         }
         let times = [self.l1_hit, self.l2_hit, self.memory, self.cache_to_cache, self.upgrade];
         let times = times.into_iter().chain([self.bus_occupancy, self.atomic, self.fence, self.poll_pause]);
-        let times = times.chain([self.burst, self.task, self.start, self.finish]);
+        let times = times.chain([self.burst, self.task, self.start, self.finish, self.wake]);
         if let Some(time) = times.into_iter().find(|&t| t > 1_000_000) {
             return wrong("a time", time.to_string(), "at most 1,000,000 cycles");
         }
@@ -208,6 +226,9 @@ impl Model {
                 "0".to_owned(),
                 "at least 1 cycle, or waiting takes no time",
             );
+        }
+        if let Some((key, value, expected)) = self.network.wrong() {
+            return wrong(key, value, expected);
         }
         for (key, value) in
             [("clock_mhz", self.clock_mhz), ("cycles_per_measured_ns", self.cycles_per_measured_ns)]
@@ -251,5 +272,9 @@ mod tests {
         assert!(model.set("cache_to_cash", 1.0).unwrap_err().to_string().contains("cache_to_cache"));
         assert!(model.set("memory", 0.5).is_err());
         assert!(model.set("store_buffer", 0.0).is_err());
+        model.set("network.hop", 7.0).unwrap();
+        assert_eq!(model.network.hop, 7);
+        assert!(model.set("network.hops", 1.0).unwrap_err().to_string().contains("hop, "));
+        assert!(model.set("network.page", 1000.0).unwrap_err().to_string().contains("a power of two"));
     }
 }

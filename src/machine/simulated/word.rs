@@ -20,8 +20,8 @@ impl SimulatedWord {
         engine::bill(std::ptr::from_ref(self).addr(), size_of::<u64>(), kind);
     }
 
-    fn replace(&self, new: impl FnOnce(u64) -> u64) -> u64 {
-        self.bill(Kind::Atomic);
+    fn replace(&self, kind: Kind, new: impl FnOnce(u64) -> u64) -> u64 {
+        self.bill(kind);
         // ORDERING: Relaxed: one host thread (see the type).
         let old = self.0.load(Ordering::Relaxed);
         self.0.store(new(old), Ordering::Relaxed);
@@ -49,15 +49,19 @@ impl Word for SimulatedWord {
     }
 
     fn swap(&self, value: u64, _order: Ordering) -> u64 {
-        self.replace(|_| value)
+        self.replace(Kind::Atomic, |_| value)
     }
 
     fn fetch_add(&self, value: u64, _order: Ordering) -> u64 {
-        self.replace(|old| old.wrapping_add(value))
+        self.replace(Kind::Atomic, |old| old.wrapping_add(value))
+    }
+
+    fn fetch_add_at_memory(&self, value: u64, _order: Ordering) -> u64 {
+        self.replace(Kind::AtMemory, |old| old.wrapping_add(value))
     }
 
     fn compare_exchange(&self, current: u64, new: u64, _: Ordering, _: Ordering) -> Result<u64, u64> {
-        let old = self.replace(|old| if old == current { new } else { old });
+        let old = self.replace(Kind::Atomic, |old| if old == current { new } else { old });
         if old == current { Ok(old) } else { Err(old) }
     }
 

@@ -3,6 +3,7 @@
 //! The calling thread is processor 0, so a run on one processor involves nobody else, and a run on
 //! two wakes one helper. Helpers are pinned to cores of their own where the system allows it.
 
+mod monitor;
 mod team;
 mod track;
 mod word;
@@ -15,6 +16,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
+pub use monitor::NativeMonitor;
 use team::Team;
 use track::{LARGE, Lent};
 pub use word::{NativeSlot, NativeWord};
@@ -253,6 +255,7 @@ unsafe impl<L: Send> Sync for Results<L> {}
 impl Machine for Threads {
     type Word = NativeWord;
     type Slot<T: Copy + Send> = NativeSlot<T>;
+    type Monitor = NativeMonitor;
     type Processor = Thread;
 
     fn name(&self) -> &str {
@@ -269,6 +272,10 @@ impl Machine for Threads {
 
     fn alloc<T: Send + Sync>(&self, n: usize, layout: Layout, make: impl FnMut(usize) -> T) -> Shared<T> {
         Shared::new(Arc::new(Heap), n, layout, make)
+    }
+
+    fn monitor(&self) -> Option<NativeMonitor> {
+        Some(NativeMonitor::default())
     }
 
     fn run<L: Send>(

@@ -16,7 +16,7 @@ mod gate;
 mod predict;
 mod programs;
 
-use crate::machine::simulated::Model;
+use crate::machine::simulated::{Model, Network};
 use crate::machine::threads::TeamSettings;
 use crate::machine::{RunError, Simulated, Threads};
 use caches::caches;
@@ -152,7 +152,9 @@ fn fit(processors: usize, progress: &dyn Fn(&'static str)) -> Result<Calibration
         task: 0,
         start: 0,
         finish: 0,
+        wake: 0,
         cycles_per_measured_ns: (1000.0 / cycle_ns).round() / 1000.0,
+        network: Network::default(),
     };
     let mut measured = Vec::new();
     for &(name, constant, native, simulated) in PROGRAMS {

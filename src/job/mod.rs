@@ -4,5 +4,6 @@ pub mod collide;
 pub mod cull;
 pub mod cull_boxes;
 pub mod draw;
+pub mod rays;
 pub mod synthetic;
 pub mod trace;

@@ -226,6 +226,29 @@ pub const METRICS: &[Metric] = {
             Lower,
             "Surface of all volumes of both bodies over that of the aligned boxes in their place.",
         ),
+        declare("rays", "rays", Lower, "Rays traced a frame, or a pass, of all classes."),
+        declare("rays_shadow", "rays", Lower, "Rays a frame from a surface to a light."),
+        declare("rays_reflection", "rays", Lower, "Mirrored rays a frame."),
+        declare("rays_refraction", "rays", Lower, "Rays a frame that were let through a surface."),
+        declare("ray_rate", "Mrays/s", Higher, "Millions of rays of all classes a second."),
+        declare("rays_hit", "%", Higher, "Share of the rays that meet something."),
+        declare(
+            "rays_through",
+            "rays",
+            Lower,
+            "Rays aimed at the corners and edges of a closed shape's triangles, from within, that meet nothing.",
+        )
+        .gives_up(AccuracyKind::Answer),
+        declare("nodes_per_ray", "nodes", Lower, "Nodes of eight boxes a ray was tested against.")
+            .gives_up(AccuracyKind::Structure),
+        declare("blocks_per_ray", "blocks", Lower, "Blocks of up to four triangles a ray was tested against.")
+            .gives_up(AccuracyKind::Structure),
+        declare("sah_cost", "steps", Lower, "What a ray costs by the surface area heuristic, a step or a test being 1.")
+            .gives_up(AccuracyKind::Structure),
+        declare("structure_time", "ns", Lower, "Median time of building the binary hierarchy over the triangles."),
+        declare("structure_rate", "Mtriangles/s", Higher, "Millions of triangles built into it a second."),
+        declare("collapse_time", "ns", Lower, "Median time of making the wide hierarchy of the binary one."),
+        declare("structure_bytes", "B", Lower, "Memory of the hierarchies that rays go through."),
         declare(
             "lost_time",
             "%",

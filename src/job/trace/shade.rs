@@ -43,14 +43,14 @@ impl Default for Look {
 /// Follows rays through a world.
 #[derive(Clone, Copy)]
 pub struct Tracer<'a> {
-    world: &'a World<'a>,
+    world: &'a World,
     intersector: &'a dyn Intersector,
     look: Look,
 }
 
 impl<'a> Tracer<'a> {
     /// `intersector` answers for the items of `world`.
-    pub fn new(world: &'a World<'a>, intersector: &'a dyn Intersector, look: Look) -> Self {
+    pub fn new(world: &'a World, intersector: &'a dyn Intersector, look: Look) -> Self {
         Self { world, intersector, look: Look { depth: look.depth.min(MOST_DEPTH), ..look } }
     }
 

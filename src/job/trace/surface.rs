@@ -30,7 +30,7 @@ pub(super) struct Surface<'a> {
 
 static UNKNOWN: LazyLock<Material> = LazyLock::new(Material::default);
 
-impl<'a> World<'a> {
+impl World {
     fn material(&self, number: Option<u32>) -> &Material {
         number.map_or(&UNKNOWN, |number| &self.scene.materials[number as usize])
     }

@@ -2,6 +2,7 @@
 
 use glam::{Mat3, Vec3};
 
+use crate::geometry::Aabb;
 use crate::scene::{Primitive, Scene};
 
 /// The shapes of a scene in world space. Item `i` is triangle `i`, or, after the last triangle, primitive
@@ -15,6 +16,11 @@ pub struct Items {
 }
 
 impl Items {
+    /// The boxes around the triangles; of one with a corner that is NaN, a box that holds no point.
+    pub fn triangle_boxes(&self) -> Vec<Aabb> {
+        self.triangles.iter().map(|corners| Aabb::of_points(corners.iter().copied())).collect()
+    }
+
     /// How many there are.
     pub fn len(&self) -> usize {
         self.triangles.len() + self.primitives.len()
@@ -27,8 +33,8 @@ impl Items {
 }
 
 /// A scene with what is needed to follow rays through it.
-pub struct World<'a> {
-    pub(super) scene: &'a Scene,
+pub struct World {
+    pub(super) scene: Scene,
     items: Items,
     /// One for each node that places a mesh, in the order of their triangles.
     runs: Vec<Run>,
@@ -52,12 +58,12 @@ pub(super) struct Placed<'a> {
     pub(super) normals: Mat3,
 }
 
-impl<'a> World<'a> {
+impl World {
     /// Lists the items of a valid scene, in the order of its nodes.
     ///
     /// # Panics
     /// If there are 2^32 of them or more.
-    pub fn new(scene: &'a Scene) -> Self {
+    pub fn new(scene: Scene) -> Self {
         let (mut triangles, mut runs) = (Vec::with_capacity(scene.instances().1), Vec::new());
         for (node, world) in scene.nodes.iter().zip(scene.world_transforms()) {
             let Some(index) = node.mesh else { continue };
@@ -69,6 +75,11 @@ impl<'a> World<'a> {
         let items = Items { triangles, primitives: scene.primitives.clone() };
         assert!(u32::try_from(items.len()).is_ok(), "items are numbered in 32 bits");
         Self { scene, items, runs }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
     }
 
     /// What rays can meet.

@@ -4,8 +4,10 @@ mod collide;
 mod cull;
 mod cull_boxes;
 mod draw;
+mod rays;
 mod settings;
 mod staging;
+mod trace;
 mod tree;
 
 use super::trace::Nearest;
@@ -90,10 +92,12 @@ const JOBS: &[(&str, OpenJob)] = &[
     ("cull", cull::open),
     ("cull_boxes", cull_boxes::open),
     ("draw", draw::open),
+    ("rays", rays::open),
+    ("trace", trace::open),
     ("tree", tree::open),
 ];
 /// The jobs made of independent pieces; the others descend a hierarchy.
-const IN_PIECES: &[&str] = &["cull_boxes"];
+const IN_PIECES: &[&str] = &["cull_boxes", "rays", "trace"];
 
 /// All schemes, whatever their shape.
 fn schemes() -> impl Iterator<Item = &'static About> {
@@ -132,6 +136,8 @@ pub struct SubjectCache {
     scenes: HashMap<String, Rc<Stage>>,
     boxes: HashMap<String, Rc<cull_boxes::BoxStage>>,
     pairs: HashMap<String, Rc<collide::PairStage>>,
+    pictures: HashMap<String, Rc<trace::TraceStage>>,
+    rays: HashMap<String, Rc<rays::RayStage>>,
     teams: HashMap<u32, Rc<Threads>>,
     models: HashMap<String, Model>,
     drawings: draw::Drawings,
@@ -165,34 +171,14 @@ impl SubjectCache {
 
     /// The stage of a cell.
     fn stage(&mut self, cell: &Cell, options: &Options) -> Result<Rc<Stage>, MeasureError> {
-        let settings = settings::of_scene(cell)?;
+        settings::of_scene(cell)?;
         staging::check_moving(cell)?;
         let key = stage_key(cell, options);
         if let Some(stage) = self.scenes.get(&key) {
             return Ok(stage.clone());
         }
         let scene = staging::scene(cell)?;
-        let path = match &options.path {
-            Some(file) if settings.contains_key("path") => {
-                let message =
-                    format!("the experiment sets `scene.path`: it takes no --path {}", file.display());
-                return Err(MeasureError::Words(message));
-            }
-            Some(file) => {
-                let size = scene.bounds().size().length().max(1e-3);
-                let path = CameraPath::read_csv(file, NEAR_SHARE * size, FAR_SHARE * size).map_err(failed)?;
-                first_frames(path, file, options.path_frames)?
-            }
-            None => staging::path(cell, &scene, options)?,
-        };
-        if path.frames.is_empty() {
-            return Err(MeasureError::Failed(match &options.path {
-                Some(file) => format!("{}: the camera path has no frames", file.display()),
-                None => {
-                    format!("scene `{}`: nothing in it that such a camera path could lead past", cell.scene)
-                }
-            }));
-        }
+        let path = cameras(cell, &scene, options)?;
         let tree = SkipTree::build(&AabbTree::build(&scene));
         tree.validate().map_err(failed)?;
         let movers = staging::movers(cell, &scene, &tree, options)?;
@@ -210,6 +196,29 @@ impl SubjectCache {
         self.teams.insert(processors, team.clone());
         Ok(team)
     }
+}
+
+/// The cameras of a cell: of a recorded path, or of the scene's kind of path.
+fn cameras(cell: &Cell, scene: &Scene, options: &Options) -> Result<CameraPath, MeasureError> {
+    let path = match &options.path {
+        Some(file) if cell.settings.contains_key("scene.path") => {
+            let message = format!("the experiment sets `scene.path`: it takes no --path {}", file.display());
+            return Err(MeasureError::Words(message));
+        }
+        Some(file) => {
+            let size = scene.bounds().size().length().max(1e-3);
+            let path = CameraPath::read_csv(file, NEAR_SHARE * size, FAR_SHARE * size).map_err(failed)?;
+            first_frames(path, file, options.path_frames)?
+        }
+        None => staging::path(cell, scene, options)?,
+    };
+    if path.frames.is_empty() {
+        return Err(MeasureError::Failed(match &options.path {
+            Some(file) => format!("{}: the camera path has no frames", file.display()),
+            None => format!("scene `{}`: nothing in it that such a camera path could lead past", cell.scene),
+        }));
+    }
+    Ok(path)
 }
 
 /// What tells one stage from another.

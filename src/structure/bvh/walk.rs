@@ -23,7 +23,8 @@ impl BinaryBvh {
             let (enters, leaves) = between(bounds, origin, inverse);
             (enters <= leaves && leaves >= near && enters <= f64::from(far)).then_some(enters)
         };
-        let mut stack: Vec<(f64, u32)> = enter(&self.nodes[0].bounds, far).map(|at| (at, 0)).into_iter().collect();
+        let mut stack: Vec<(f64, u32)> =
+            enter(&self.nodes[0].bounds, far).map(|at| (at, 0)).into_iter().collect();
         while let Some((at, number)) = stack.pop() {
             if at > f64::from(far) {
                 continue;
@@ -38,8 +39,8 @@ impl BinaryBvh {
                 }
                 continue;
             }
-            let mut children =
-                [node.first, node.first + 1].map(|child| (enter(&self.nodes[child as usize].bounds, far), child));
+            let mut children = [node.first, node.first + 1]
+                .map(|child| (enter(&self.nodes[child as usize].bounds, far), child));
             if children[0].0 < children[1].0 {
                 children.swap(0, 1);
             }
@@ -96,7 +97,8 @@ mod tests {
         let settings = Settings { most_in_leaf: 1, ..Settings::default() };
         Builder::new("binned_sah", &settings).unwrap().build(&Input::of(&boxes), &mut bvh).unwrap();
         let directions = [Vec3::X, -Vec3::Y, Vec3::new(1.0, 0.3, -0.2), Vec3::new(0.0, -1e-20, 1.0)];
-        for (number, direction) in (0..400).flat_map(|number| directions.map(|direction| (number, direction))) {
+        for (number, direction) in (0..400).flat_map(|number| directions.map(|direction| (number, direction)))
+        {
             let aim = boxes[number].centre();
             let ray = Ray::new(aim - direction.normalize() * 20.0, direction);
             let (origin, inverse) = (ray.origin.as_dvec3(), ray.direction.as_dvec3().recip());
@@ -125,7 +127,10 @@ mod tests {
         assert!(asked(&BinaryBvh::default(), &ray).is_empty());
         let boxes = boxes(3);
         let mut bvh = BinaryBvh::default();
-        Builder::new("binned_sah", &Settings::default()).unwrap().build(&Input::of(&boxes), &mut bvh).unwrap();
+        Builder::new("binned_sah", &Settings::default())
+            .unwrap()
+            .build(&Input::of(&boxes), &mut bvh)
+            .unwrap();
         for bad in [Vec3::ZERO, Vec3::NAN] {
             assert!(asked(&bvh, &Ray::new(Vec3::splat(0.5), bad)).is_empty());
         }

@@ -36,6 +36,14 @@ pub fn scene(name: &str) -> Result<String, MeasureError> {
     line("nodes by depth", numbers(&holds.depths));
     line("meshes", format!("{}, {} triangles", holds.meshes, holds.unique_triangles));
     line("placed", format!("{} times, {} triangles", holds.instances, holds.instanced_triangles));
+    if holds.primitives > 0 {
+        line("spheres and cones", holds.primitives.to_string());
+    }
+    line(
+        "seen with",
+        format!("{} materials, {} textures, {} lights", holds.materials, holds.textures, holds.lights),
+    );
+    scene.warnings.iter().for_each(|warning| line("not there", warning.clone()));
     match (holds.bounds_min, holds.bounds_max) {
         (Some(min), Some(max)) => line("bounds", format!("{min:?} to {max:?}")),
         _ => line("bounds", "none: there is nothing to see".to_owned()),

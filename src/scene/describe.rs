@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Node, Scene};
+use super::{Materials, Mesh, Node, Primitive, Scene};
 
 /// What a scene holds. How unbalanced the tree over it is, the statistics of the structure room say.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -27,11 +27,19 @@ pub struct Description {
     pub instances: usize,
     /// Triangles in the world: a mesh counts each time it is placed.
     pub instanced_triangles: usize,
+    /// Spheres and cones.
+    pub primitives: usize,
+    /// Materials.
+    pub materials: usize,
+    /// Textures.
+    pub textures: usize,
+    /// Lights.
+    pub lights: usize,
     /// Least corner of the world, in metres; absent if there is nothing in it.
     pub bounds_min: Option<[f32; 3]>,
     /// Greatest corner of the world, in metres; absent if there is nothing in it.
     pub bounds_max: Option<[f32; 3]>,
-    /// Bytes of vertices, triangles and nodes in memory, without names.
+    /// Bytes of vertices, triangles, nodes, primitives and what they are seen with in memory, without names.
     pub bytes: usize,
     /// How skinny half of the triangles are at most: longest edge over the height on it, 1.15 for an
     /// equilateral one. In the world, triangles without area left out; 0 if there are none.
@@ -69,14 +77,31 @@ pub fn describe(scene: &Scene) -> Description {
         unique_triangles,
         instances,
         instanced_triangles,
+        primitives: scene.primitives.len(),
+        materials: scene.materials.len(),
+        textures: scene.textures.len(),
+        lights: scene.lights.len(),
         bounds_min: bounds.map(|bounds| bounds.min.to_array()),
         bounds_max: bounds.map(|bounds| bounds.max.to_array()),
-        bytes: 12 * (vertices + unique_triangles) + 4 * children + size_of::<Node>() * scene.nodes.len(),
+        bytes: 12 * (vertices + unique_triangles)
+            + 4 * children
+            + size_of::<Node>() * scene.nodes.len()
+            + size_of::<Primitive>() * scene.primitives.len()
+            + scene.meshes.iter().map(shading_bytes).sum::<usize>()
+            + scene.textures.iter().map(|texture| 3 * texture.pixels.len()).sum::<usize>(),
         aspect_p50: percentile(0.5),
         aspect_p90: percentile(0.9),
         aspect_p99: percentile(0.99),
         zero_area: instanced_triangles - aspects.len(),
     }
+}
+
+fn shading_bytes(mesh: &Mesh) -> usize {
+    let (normals, coordinates) = (&mesh.shading.normals, &mesh.shading.coordinates);
+    let corners =
+        [&normals.triangles, &coordinates.triangles].into_iter().flatten().map(Vec::len).sum::<usize>();
+    let materials = if let Materials::Each(each) = &mesh.shading.materials { each.len() } else { 0 };
+    12 * (normals.values.len() + corners) + 8 * coordinates.values.len() + 4 * materials
 }
 
 fn depths(scene: &Scene) -> Vec<usize> {

@@ -29,4 +29,4 @@ pub use movers::Movers;
 pub use path::{CameraPath, PATHS, PathKind, Waypoint};
 pub use primitive::{Primitive, Shape};
 pub use random::SplitMix64;
-pub use shading::{Corners, Material, Materials, PointLight, Shading, Texture};
+pub use shading::{Corners, Material, Materials, PointLight, Shading, Texture, View};

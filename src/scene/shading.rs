@@ -99,6 +99,19 @@ pub struct PointLight {
     pub colour: Vec3,
 }
 
+/// Where a scene wants to be looked at from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Where the eye is, in metres.
+    pub eye: Vec3,
+    /// The point looked at, in metres.
+    pub look: Vec3,
+    /// To the top of the picture.
+    pub up: Vec3,
+    /// Full vertical angle, in radians.
+    pub fov_y: f32,
+}
+
 /// Which material each triangle of a mesh has, by number among the scene's materials.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Materials {

@@ -49,9 +49,10 @@ impl Eye {
 /// Half the height of the picture, as a tangent: a vertical angle of 45 degrees.
 const HALF: f32 = 0.414_213_57;
 
-/// A camera that sees the whole of a scene, from above its right front corner, y being up; `aspect` is the picture's
-/// width over its height. None for a scene in which there is nothing, or whose size overflows.
-pub fn whole_view(scene: &Scene, aspect: f32) -> Option<Camera> {
+/// The camera of the scene's own view, or, if it has none that can be had, one that sees all of it from above its
+/// right front corner, y being up; `aspect` is the picture's width over its height. None for a scene in which there is
+/// nothing, or whose size overflows.
+pub fn default_view(scene: &Scene, aspect: f32) -> Option<Camera> {
     let bounds = scene.bounds();
     if bounds.is_empty() {
         return None;
@@ -59,16 +60,36 @@ pub fn whole_view(scene: &Scene, aspect: f32) -> Option<Camera> {
     let centre = bounds.centre();
     // A point is given a size that can be told from its own rounding.
     let radius = bounds.half_diagonal().max(centre.abs().max_element() * 1e-5).max(f32::MIN_POSITIVE * 1e6);
-    // The cone about the line of sight must hold the sphere about the scene.
-    let narrow = HALF * aspect.min(1.0);
-    let distance = radius * (1.0 + narrow * narrow).sqrt() / narrow;
-    let eye = centre + Vec3::new(0.5, 0.45, 1.0).normalize() * distance;
-    let lens = Lens::Symmetric { fov_y: std::f32::consts::FRAC_PI_4, aspect };
-    Camera::look_at(eye, centre, Vec3::Y, lens, distance * 1e-3, distance + 1.1 * radius).ok()
+    let make = |eye: Vec3, look: Vec3, up: Vec3, fov_y: f32| {
+        let far = eye.distance(centre) + 1.1 * radius;
+        Camera::look_at(eye, look, up, Lens::Symmetric { fov_y, aspect }, far * 1e-4, far).ok()
+    };
+    let own = scene.view.and_then(|view| make(view.eye, view.look, view.up, view.fov_y));
+    own.or_else(|| {
+        let toward = Vec3::new(0.5, 0.45, 1.0).normalize();
+        let right = Vec3::Y.cross(toward).normalize();
+        let up = toward.cross(right);
+        // As near as lets every corner of the bounds into the picture, or into its own rounding.
+        let half = bounds.size() * 0.5;
+        let corners = (0..8).map(|corner| {
+            let side = |axis: usize| if corner >> axis & 1 == 1 { half[axis] } else { -half[axis] };
+            let off = Vec3::new(side(0), side(1), side(2));
+            let reach = (off.dot(right).abs() / aspect).max(off.dot(up).abs());
+            off.dot(toward) + reach / HALF
+        });
+        let distance = corners.fold(radius * 0.1, f32::max) * 1.05;
+        make(centre + toward * distance, centre, Vec3::Y, std::f32::consts::FRAC_PI_4)
+    })
 }
 
-/// A light for a scene that has none: above the eye to its left, far enough off that surfaces show their shape.
+/// A light for a scene that has none: above the eye to its left, far enough off that surfaces show their shape; close by
+/// where the eye is within the scene, so that no wall is between.
 pub fn light_at(camera: &Camera, scene: &Scene) -> PointLight {
-    let far = scene.bounds().half_diagonal();
-    PointLight { position: camera.eye + (camera.up * 0.8 - camera.right * 0.6) * far, colour: Vec3::ONE }
+    let bounds = scene.bounds();
+    let is_within = camera.eye.cmpge(bounds.min).all() && camera.eye.cmple(bounds.max).all();
+    let far = bounds.half_diagonal() * if is_within { 0.02 } else { 1.0 };
+    PointLight {
+        position: camera.eye + (camera.up * 0.8 - camera.right * 0.6) * far,
+        colour: Vec3::splat(0.9),
+    }
 }

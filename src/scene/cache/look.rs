@@ -5,7 +5,9 @@ use glam::{Vec2, Vec3};
 use super::layout::{Reader, put, put_count, put_words};
 use crate::geometry::Sphere;
 use crate::geometry::hit::Cone;
-use crate::scene::{Corners, Material, Materials, PointLight, Primitive, Scene, Shading, Shape, Texture};
+use crate::scene::{
+    Corners, Material, Materials, PointLight, Primitive, Scene, Shading, Shape, Texture, View,
+};
 
 /// Stands for no texture and for no material.
 const NONE: u32 = u32::MAX;
@@ -46,6 +48,11 @@ pub(super) fn put_scene(out: &mut Vec<u8>, scene: &Scene) -> Option<()> {
         put_floats(out, &tip.to_array());
         put_floats(out, &[tip_radius]);
         out.extend(primitive.material.unwrap_or(NONE).to_le_bytes());
+    }
+    out.push(u8::from(scene.view.is_some()));
+    if let Some(view) = &scene.view {
+        [view.eye, view.look, view.up].iter().for_each(|vector| put_floats(out, &vector.to_array()));
+        put_floats(out, &[view.fov_y]);
     }
     put_count(out, scene.warnings.len())?;
     scene.warnings.iter().try_for_each(|warning| put(out, warning.bytes()))
@@ -92,6 +99,7 @@ pub(super) fn read_scene(from: &mut Reader<'_>, scene: Scene) -> Option<Scene> {
         textures: from.list(read_texture)?,
         lights: from.list(|from| Some(PointLight { position: from.vector()?, colour: from.vector()? }))?,
         primitives: from.list(read_primitive)?,
+        view: read_view(from)?,
         warnings: from.list(Reader::text)?,
         ..scene
     })
@@ -119,6 +127,16 @@ fn read_material(from: &mut Reader<'_>) -> Option<Material> {
 fn read_texture(from: &mut Reader<'_>) -> Option<Texture> {
     let (name, width, height) = (from.text()?, from.word()?, from.word()?);
     Some(Texture { name, width, height, pixels: from.arrays()?.to_vec() })
+}
+
+/// None twice: nothing that can be read, or no view.
+fn read_view(from: &mut Reader<'_>) -> Option<Option<View>> {
+    let [has_view] = from.array()?;
+    if has_view == 0 {
+        return Some(None);
+    }
+    let (eye, look, up) = (from.vector()?, from.vector()?, from.vector()?);
+    Some(Some(View { eye, look, up, fov_y: from.number()? }))
 }
 
 fn read_primitive(from: &mut Reader<'_>) -> Option<Primitive> {

@@ -2,13 +2,18 @@
 
 use super::{Scene, SceneError, names};
 
+mod corner;
+mod cylinders;
 mod dragons;
 mod factory;
 mod geodesic;
+mod noise_sphere;
 mod place;
 mod robot;
+mod room;
 mod shapes;
 mod shell;
+mod spheres;
 
 pub(super) use geodesic::geodesic;
 pub(super) use shapes::{cuboid, cylinder};
@@ -75,6 +80,16 @@ pub const GENERATORS: &[Generator] = &[
     shell::OUTER,
     shell::FIVE_PERCENT,
     shell::ONE_PERCENT,
+    room::ROOM,
+    corner::CORNER,
+    spheres::THOUSANDS,
+    spheres::MILLION,
+    noise_sphere::NOISE_SPHERE,
+    cylinders::SIDES_50,
+    cylinders::SIDES_150,
+    cylinders::SIDES_500,
+    cylinders::SIDES_1000,
+    cylinders::SIDES_5000,
 ];
 
 /// Makes a scene by its name.

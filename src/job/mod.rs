@@ -5,3 +5,4 @@ pub mod cull;
 pub mod cull_boxes;
 pub mod draw;
 pub mod synthetic;
+pub mod synthetic_tiles;

@@ -6,6 +6,7 @@ mod cull_boxes;
 mod draw;
 mod settings;
 mod staging;
+mod tiles;
 mod tree;
 
 use super::trace::Nearest;
@@ -90,10 +91,11 @@ const JOBS: &[(&str, OpenJob)] = &[
     ("cull", cull::open),
     ("cull_boxes", cull_boxes::open),
     ("draw", draw::open),
+    ("tiles", tiles::open),
     ("tree", tree::open),
 ];
 /// The jobs made of independent pieces; the others descend a hierarchy.
-const IN_PIECES: &[&str] = &["cull_boxes"];
+const IN_PIECES: &[&str] = &["cull_boxes", "tiles"];
 
 /// All schemes, whatever their shape.
 fn schemes() -> impl Iterator<Item = &'static About> {

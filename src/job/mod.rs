@@ -6,4 +6,5 @@ pub mod cull_boxes;
 pub mod draw;
 pub mod rays;
 pub mod synthetic;
+pub mod synthetic_tiles;
 pub mod trace;

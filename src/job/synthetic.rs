@@ -191,7 +191,7 @@ fn shape(nodes: u32, seed: u64) -> Vec<u32> {
 }
 
 /// SplitMix64's finisher on the next state: a good hash of a small number.
-fn mix(number: u64) -> u64 {
+pub(super) fn mix(number: u64) -> u64 {
     let mut z = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -199,7 +199,7 @@ fn mix(number: u64) -> u64 {
 }
 
 /// A number of `range` that depends on `hash` alone.
-fn draw(hash: u64, range: &RangeInclusive<u32>) -> u32 {
+pub(super) fn draw(hash: u64, range: &RangeInclusive<u32>) -> u32 {
     let span = u64::from(range.end().saturating_sub(*range.start())) + 1;
     range.start() + (((hash >> 32) * span) >> 32) as u32
 }
@@ -209,7 +209,7 @@ fn draw(hash: u64, range: &RangeInclusive<u32>) -> u32 {
 /// The count itself is the chain: a processor that executes out of order knows only at its end that
 /// the loop is over, so it can overlap neither the next node nor a scheme's bookkeeping with it.
 #[inline(always)]
-fn turn(turns: u32, one: u64) {
+pub(super) fn turn(turns: u32, one: u64) {
     let mut left = u64::from(turns);
     while left != 0 {
         left = left.wrapping_mul(one).wrapping_sub(1);
@@ -219,7 +219,7 @@ fn turn(turns: u32, one: u64) {
 
 /// Turns a nanosecond takes on this host, measured once a process: the fastest of many samples, since
 /// whatever disturbs a sample makes it slower.
-fn turns_per_ns<M: Machine>(machine: &M) -> f64 {
+pub(super) fn turns_per_ns<M: Machine>(machine: &M) -> f64 {
     static MEASURED: OnceLock<f64> = OnceLock::new();
     const TURNS: u32 = 20_000;
     *MEASURED.get_or_init(|| {

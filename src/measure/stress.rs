@@ -5,6 +5,7 @@
 //! runs seldom see. A schedule of real threads cannot be repeated, but what was asked of it can: each
 //! run has a seed. A run that never ends shows in a progress that stops.
 
+mod barriers;
 mod contacts;
 mod cull_kernels;
 mod cull_tests;
@@ -20,6 +21,7 @@ use std::time::{Duration, Instant};
 
 /// The primitives that can be stressed by themselves.
 const PRIMITIVES: &[(&str, primitives::Check)] = &[
+    ("barriers", barriers::barriers),
     ("in_queue", primitives::in_queue),
     ("lock", primitives::lock),
     ("quiescence", primitives::quiescence),
@@ -70,16 +72,30 @@ pub enum StressError {
 
 /// Everything that can be stressed, besides `all`.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    let schemes = tree_schemes::SCHEMES
-        .iter()
-        .chain(tile_schemes::SCHEMES.iter().filter(|scheme| is_tiles(scheme.name)));
+    let is_new = |scheme: &&About| !is_in(tree_schemes::SCHEMES, scheme.name);
+    let schemes = tree_schemes::SCHEMES.iter().chain(tile_schemes::SCHEMES.iter().filter(is_new));
     PRIMITIVES.iter().map(|(name, _)| *name).chain(schemes.map(|scheme| scheme.name))
 }
 
-/// Whether a name is that of a tile scheme; one that exists for trees too (`serial`) is taken for a tree's.
-fn is_tiles(name: &str) -> bool {
-    let is_in = |schemes: &[About]| schemes.iter().any(|scheme| scheme.name == name);
-    is_in(tile_schemes::SCHEMES) && !is_in(tree_schemes::SCHEMES)
+fn is_in(schemes: &[About], name: &str) -> bool {
+    schemes.iter().any(|scheme| scheme.name == name)
+}
+
+/// Checks the schemes of a name: there may be one for trees and one for tiles (`serial`, `work_stealing`).
+fn check_schemes(
+    name: &str,
+    team: &Threads,
+    processors: usize,
+    random: &mut SplitMix64,
+) -> Result<u64, String> {
+    let mut done = 0;
+    if is_in(tree_schemes::SCHEMES, name) {
+        done += trees::check(name, team, processors, random)?;
+    }
+    if is_in(tile_schemes::SCHEMES, name) {
+        done += tiles::check(name, team, processors, random)?;
+    }
+    Ok(done)
 }
 
 /// Stresses the scheme or primitive called `what`, or `all` in turn, on up to `processors` threads until
@@ -130,8 +146,7 @@ pub fn stress_from(
             let primitive = PRIMITIVES.iter().find(|(primitive, _)| *primitive == name);
             let outcome = match primitive {
                 Some((_, check)) => check(&team, processors, &mut random),
-                None if is_tiles(name) => tiles::check(name, &team, processors, &mut random),
-                None => trees::check(name, &team, processors, &mut random),
+                None => check_schemes(name, &team, processors, &mut random),
             };
             report.runs += 1;
             match outcome {

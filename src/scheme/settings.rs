@@ -1,7 +1,7 @@
 //! Named settings of a scheme, as words: what a command line, an experiment file and a row hold.
 
 use crate::machine::{Layout, Machine};
-use crate::sync::{CounterKind, LockKind};
+use crate::sync::{BarrierKind, CounterKind, LockKind};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
@@ -145,6 +145,20 @@ impl Settings {
     pub fn counter(&self) -> Result<CounterKind, SettingError> {
         let locked = CounterKind::Locked(self.lock()?);
         self.choice("counter", locked, &[("locked", locked), ("fetch_add", CounterKind::FetchAdd)])
+    }
+
+    /// The kind of barrier; fetch-op by default.
+    ///
+    /// # Errors
+    /// [`SettingError::Value`], also for one that the machine does not have.
+    pub fn barrier<M: Machine>(&self, machine: &M) -> Result<BarrierKind, SettingError> {
+        let has = |kind| kind != BarrierKind::System || machine.is_native() || machine.monitor().is_some();
+        let kind = self.choice("barrier", BarrierKind::default(), BarrierKind::ALL)?;
+        if has(kind) {
+            return Ok(kind);
+        }
+        let expected = format!("fetch_op or tree: how long the system of `{}` takes is not known", machine.name());
+        Err(self.wrong("barrier", "system", expected))
     }
 
     /// Refuses a machine that is not made of real threads.

@@ -53,9 +53,16 @@ impl<M: Machine> Counter<M> {
         }
     }
 
-    /// Sets the counter back to zero; nobody may be drawing.
+    /// Makes the counter as new between two runs, its lock too: whoever was ended while waiting for that stands
+    /// in its queue for ever.
     pub fn reset(&self) {
         // ORDERING: Relaxed: between runs.
+        self.words.iter().for_each(|word| word.store(0, Ordering::Relaxed));
+    }
+
+    /// Sets the count back to zero within a run, while something else keeps everybody from drawing.
+    pub fn restart(&self) {
+        // ORDERING: Relaxed: what keeps them from drawing orders it.
         self.count().store(0, Ordering::Relaxed);
     }
 }

@@ -1,7 +1,7 @@
 //! Every tile scheme of the list, whole: each piece is worked on exactly once, by one processor alone.
 
 use crate::machine::{Loom, LoomSlot};
-use crate::mutant::Mutant::Torn;
+use crate::mutant::Mutant::{NoWait, Torn};
 use crate::mutant::is_caught;
 use crate::{Bounds, check};
 use apportion::machine::{Processor, Slot};
@@ -44,12 +44,28 @@ fn works(name: &str, processors: usize, count: usize) {
     }
 }
 
+/// Goes through three frames in one run: the pieces of one are those of the next, so that a frame begun too early is a
+/// race.
+fn goes_through_frames(name: &str, processors: usize, count: usize) {
+    let machine = Loom::new();
+    let mut scheme = Scheme::new(name, &machine, processors, BTreeMap::new()).expect("defaults");
+    let pieces = Pieces((0..count).map(|_| LoomSlot::new(0)).collect());
+    scheme.run_frames(&machine, &[&pieces, &pieces, &pieces]).expect("no panic");
+    for (piece, slot) in pieces.0.iter().enumerate() {
+        // SAFETY: the run is over.
+        assert_eq!(unsafe { slot.read() }, 3, "{name}: times piece {piece} was worked on");
+    }
+}
+
 fn names() -> impl Iterator<Item = &'static str> {
     SCHEMES.iter().filter(|scheme| !scheme.native_only).map(|scheme| scheme.name)
 }
 
 /// Schemes in which the processors share nothing, so that nothing can go wrong between two.
 const SHARE_NOTHING: &[&str] = &["serial", "static_blocks", "interleaved"];
+
+/// Schemes that take so many steps a piece that fewer preemptions have to do.
+const MANY_STEPS: &[&str] = &["per_pixel_queue", "work_stealing"];
 
 fn bounds() -> Bounds {
     Bounds { preemptions: 3, steps: 5_000 }
@@ -58,9 +74,26 @@ fn bounds() -> Bounds {
 #[test]
 fn every_scheme_works_on_each_piece_once() {
     for name in names() {
+        let mut executions = 0;
         for (processors, count) in [(2, 0), (2, 1), (2, 4), (2, 5), (3, 3)] {
-            check(bounds(), move || works(name, processors, count));
+            let preemptions = if MANY_STEPS.contains(&name) { 4 - processors } else { 3 };
+            let bounds = Bounds { preemptions, ..bounds() };
+            executions += check(bounds, move || works(name, processors, count));
         }
+        eprintln!("{name}: {executions} executions");
+    }
+}
+
+#[test]
+fn no_frame_runs_into_the_next() {
+    let bounds = Bounds { preemptions: 2, ..bounds() };
+    for name in names() {
+        let executions = check(bounds, move || goes_through_frames(name, 2, 2));
+        eprintln!("frames, {name}: {executions} executions");
+    }
+    // Where nothing is shared, a piece is the same processor's in every frame, and who comes early does no harm.
+    for name in names().filter(|name| !SHARE_NOTHING.contains(name)) {
+        assert!(is_caught(NoWait, bounds, move || goes_through_frames(name, 2, 2)), "{name}");
     }
 }
 

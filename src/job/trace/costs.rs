@@ -77,6 +77,7 @@ impl TileCosts {
 }
 
 /// A picture traced before: each of its tiles is charged what it cost, and nothing is traced.
+#[derive(Clone, Copy)]
 pub struct Costed<'a>(pub &'a TileCosts);
 
 impl TileWork for Costed<'_> {

@@ -3,7 +3,7 @@
 
 use super::engine;
 use super::{SimulatedWord, VirtualProcessor};
-use crate::machine::{Activity, Monitor, Processor, Shared, Word};
+use crate::machine::{Monitor, Processor, Shared, Word};
 use std::sync::atomic::Ordering;
 
 /// A value under a mutex, with sleepers whose waking is billed.
@@ -56,9 +56,7 @@ impl Monitor<VirtualProcessor> for SimulatedMonitor {
         asleep.store(place, Ordering::Relaxed);
         self.unlock();
         cpu.wait_until(&[value], || may_go(before, value.load(Ordering::Relaxed)));
-        let was = cpu.enter(Activity::Waiting);
         engine::spend(place * self.wake, false);
-        cpu.enter(was);
     }
 
     fn reset(&self) {

@@ -150,11 +150,11 @@ impl Thread {
         *self.track.get_mut() = track;
     }
 
-    /// Marks that this worker waits, unless it is idle anyway; returns what it did before.
+    /// Marks that this worker waits, unless it is idle or at a barrier; returns what it did before.
     #[inline]
     fn begin_wait(&self) -> Activity {
         let now = if self.left.get() == 0 { Activity::Idle } else { self.now() };
-        if now == Activity::Idle { now } else { self.enter(Activity::Waiting) }
+        if matches!(now, Activity::Idle | Activity::Barrier) { now } else { self.enter(Activity::Waiting) }
     }
 
     #[cold]

@@ -12,6 +12,9 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("first", &["1", "20", "500"]),
     ("last", &["1", "4"]),
     ("layout", &["1999", "padded"]),
+    ("counter", &["locked", "fetch_add"]),
+    ("lock", &["test_and_set", "test_and_test_and_set", "ticket", "mcs"]),
+    ("barrier", &["fetch_op", "tree", "system"]),
 ];
 
 const PANIC: &str = "a rotten piece";

@@ -7,6 +7,7 @@ mod draw;
 mod rays;
 mod settings;
 mod staging;
+mod tiles;
 mod trace;
 mod tree;
 
@@ -93,11 +94,12 @@ const JOBS: &[(&str, OpenJob)] = &[
     ("cull_boxes", cull_boxes::open),
     ("draw", draw::open),
     ("rays", rays::open),
+    ("tiles", tiles::open),
     ("trace", trace::open),
     ("tree", tree::open),
 ];
 /// The jobs made of independent pieces; the others descend a hierarchy.
-const IN_PIECES: &[&str] = &["cull_boxes", "rays", "trace"];
+const IN_PIECES: &[&str] = &["cull_boxes", "rays", "tiles", "trace"];
 
 /// All schemes, whatever their shape.
 fn schemes() -> impl Iterator<Item = &'static About> {

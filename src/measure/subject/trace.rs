@@ -1,7 +1,7 @@
 //! The job `trace`: pictures of a scene, frame by frame, in tiles.
 //!
 //! Settings: `job.size`, `WIDTHxHEIGHT` pixels; `job.tile`, `WIDTHxHEIGHT` pixels of a piece; `job.depth`, bounces
-//! followed; `job.builder`, one of [`BUILDERS`]; `job.triangle` (`watertight`, `fast`). Cameras are those
+//! followed; `job.frames_a_run` (1), frames in one run with a barrier between each two, of which a frame's time is the mean; `job.builder`, one of [`BUILDERS`]; `job.triangle` (`watertight`, `fast`). Cameras are those
 //! of `scene.path` or of a recorded path; where neither is set, every frame is the scene's own view, or the whole of it.
 //!
 //! On threads every picture is held against the one that one processor makes. On a simulated machine a tile is charged
@@ -37,6 +37,7 @@ pub(super) struct TraceStage {
     eyes: Vec<Eye>,
     look: Look,
     tile: (u32, u32),
+    frames_a_run: usize,
     /// What one processor sees, by frame, once it has been asked.
     pictures: RefCell<Vec<Option<Rc<Image>>>>,
     costs: OnceCell<Vec<(TileCosts, Counts)>>,
@@ -46,6 +47,7 @@ struct Asked {
     size: (u32, u32),
     tile: (u32, u32),
     depth: u32,
+    frames_a_run: usize,
     builder: &'static str,
     triangle: TriangleKind,
 }
@@ -66,6 +68,7 @@ impl Asked {
             tile: settings.read("tile", Tiles::OF_PAPER, "WIDTHxHEIGHT, such as 32x4", pair(Tiles::MOST))?,
             depth: settings.number("depth", f64::from(Look::default().depth), 0.0..=f64::from(MOST_DEPTH))?
                 as u32,
+            frames_a_run: settings.number("frames_a_run", 1.0, 1.0..=1000.0)? as usize,
             builder: settings.choice("builder", &names)?,
             triangle: settings.choice("triangle", TriangleKind::ALL)?,
         };
@@ -124,6 +127,7 @@ impl TraceStage {
             eyes: cameras.iter().map(|camera| Eye::new(camera, width, height)).collect(),
             look: Look { depth: asked.depth, ..Look::default() },
             tile: asked.tile,
+            frames_a_run: asked.frames_a_run,
             costs: OnceCell::new(),
         })
     }
@@ -215,14 +219,19 @@ impl<H: Borrow<M>, M: Machine> PictureSubject<H, M> {
         let machine = self.machine.borrow();
         match &self.way {
             Way::Traced(film) => {
-                let shares = self.scheme.run(machine, &self.stage.frame(frame, film))?;
+                let again = || self.stage.frame(frame, film);
+                let works: Vec<_> = std::iter::repeat_with(again).take(self.stage.frames_a_run).collect();
+                let shares = self.scheme.run_frames(machine, &works)?;
                 let mut rays = Counts::default();
                 shares.iter().for_each(|share| rays += share.found);
                 Ok((visited(&shares), rays))
             }
             Way::Charged(costs) => {
-                let shares = self.scheme.run(machine, &Costed(&costs[frame]))?;
-                let rays = self.stage.costs.get().map_or(Counts::default(), |all| all[frame].1);
+                let works = vec![Costed(&costs[frame]); self.stage.frames_a_run];
+                let shares = self.scheme.run_frames(machine, &works)?;
+                let mut rays = Counts::default();
+                let one = self.stage.costs.get().map_or(Counts::default(), |all| all[frame].1);
+                works.iter().for_each(|_| rays += one);
                 Ok((visited(&shares), rays))
             }
         }
@@ -231,7 +240,8 @@ impl<H: Borrow<M>, M: Machine> PictureSubject<H, M> {
     /// Holds what a frame came to against what one processor gets.
     fn check(&mut self, frame: usize, tiles: &[u64]) -> Result<(), MeasureError> {
         let stage = &self.stage;
-        let (done, expected) = (tiles.iter().sum::<u64>(), stage.tiles(frame) as u64);
+        let expected = (stage.tiles(frame) * stage.frames_a_run) as u64;
+        let done = tiles.iter().sum::<u64>();
         if done != expected {
             return Err(MeasureError::Failed(format!("frame {frame}: {done} tiles done of {expected}")));
         }
@@ -265,10 +275,11 @@ impl<H: Borrow<M>, M: Machine> PictureSubject<H, M> {
             let (tiles, counts) = outcome.map_err(failed)?;
             traversal.add(machine, tiles.len(), ticks);
             let tick = 1.0 / machine.ticks_per_nanosecond();
-            let time = ticks as f64 * tick;
+            let a_run = self.stage.frames_a_run as f64;
+            let time = ticks as f64 * tick / a_run;
             self.check(frame, &tiles)?;
             samples.push(Sample::of_frame("frame_time", frame, time));
-            all += time;
+            all += time * a_run;
             rays += counts;
             used += tiles.len();
             imbalance += load_imbalance(tiles.into_iter());
@@ -276,8 +287,10 @@ impl<H: Borrow<M>, M: Machine> PictureSubject<H, M> {
                 break;
             }
         }
+        // Of all runs.
+        let traced = (frames * self.stage.frames_a_run).max(1) as f64;
         let frames = frames.max(1) as f64;
-        let a_frame = |metric, count: u64| Sample::of_path(metric, count as f64 / frames);
+        let a_frame = |metric, count: u64| Sample::of_path(metric, count as f64 / traced);
         samples.push(a_frame("rays", rays.rays()));
         samples.push(a_frame("rays_shadow", rays.shadow));
         samples.push(a_frame("rays_reflection", rays.reflection));

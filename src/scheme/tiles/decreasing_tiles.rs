@@ -16,7 +16,7 @@
 //! Settings: `first`, `last` (pieces in the first and the last tile; the former is worked out as said unless it is
 //! set). `layout`.
 
-use super::work::run;
+use super::work::Frames;
 use super::{MOST_PIECES, Share, TileWork};
 use crate::machine::{Layout, Machine, Processor, RunError, Shared};
 use crate::scheme::{SettingError, Settings};
@@ -48,9 +48,9 @@ impl<M: Machine> DecreasingTiles<M> {
     pub(super) fn run<W: TileWork>(
         &mut self,
         machine: &M,
-        work: &W,
+        frames: &Frames<'_, M, W>,
     ) -> Result<Vec<Share<W::Found>>, RunError> {
-        let pieces = work.pieces();
+        let pieces = frames.pieces();
         if self.starts[self.starts.len() - 1] != pieces {
             let first = if self.first > 0 { self.first } else { pieces / (2 * self.processors) };
             let starts = starts(pieces, first, self.last);
@@ -58,7 +58,7 @@ impl<M: Machine> DecreasingTiles<M> {
         }
         self.counter.reset();
         let (counter, starts) = (&self.counter, self.starts.as_slice());
-        run(machine, self.processors, work, |cpu, _| {
+        frames.run(machine, self.processors, || counter.restart(), |cpu, _| {
             let at = counter.draw(cpu) as usize;
             let (start, end) = (starts.get(at)?, starts.get(at + 1)?);
             cpu.touch(start);

@@ -5,7 +5,7 @@
 //!
 //! Settings: `tile` (pieces in a tile, 1).
 
-use super::work::run;
+use super::work::Frames;
 use super::{MOST_PIECES, Share, TileWork};
 use crate::machine::{Machine, Processor, RunError};
 use crate::scheme::{SettingError, Settings};
@@ -30,10 +30,10 @@ impl<M: Machine> Interleaved<M> {
     pub(super) fn run<W: TileWork>(
         &mut self,
         machine: &M,
-        work: &W,
+        frames: &Frames<'_, M, W>,
     ) -> Result<Vec<Share<W::Found>>, RunError> {
-        let (pieces, tile, processors) = (work.pieces(), self.tile, self.processors);
-        run(machine, processors, work, |cpu, turn| {
+        let (pieces, tile, processors) = (frames.pieces(), self.tile, self.processors);
+        frames.run(machine, processors, || (), |cpu, turn| {
             let start = tile * (turn * processors + cpu.id());
             (start < pieces).then(|| start..pieces.min(start + tile))
         })

@@ -1,8 +1,12 @@
 //! Sharing out independent pieces: blocks of boxes, tiles of a picture, ranges of an array.
 //!
 //! Pieces are numbered from 0 and cost nobody knows what. Each is worked on exactly once, by whichever
-//! processor gets it. All that the processors ever share is one counter, drawn from with a fetch-and-add, so the
-//! same schemes can run wherever there is one; pieces are handed out in ranges, that is, tiles.
+//! processor gets it. Pieces are handed out in ranges, that is, tiles. All that the processors share in most schemes is
+//! one counter, drawn from with a fetch-and-add, so that these can run wherever there is one.
+//!
+//! Many frames can be gone through in one run, with a barrier between each two of them and not an end of the run
+//! (Parker et al. 1999, sec. 2.1): [`Scheme::run_frames`]. Setting of every scheme: `barrier` (`fetch_op`, `tree`,
+//! `system`; see [`BarrierKind`]).
 //!
 //! ```
 //! use apportion::machine::Threads;
@@ -18,15 +22,19 @@
 mod decreasing_tiles;
 mod fixed_tiles;
 mod interleaved;
+mod per_pixel_queue;
+mod rayon_iter;
 mod serial;
 mod static_blocks;
 mod work;
+mod work_stealing;
 
 pub use super::{About, Share, ShareError};
 use super::{SettingError, Settings};
-use crate::machine::{Machine, RunError};
+use crate::machine::{Layout, Machine, RunError};
+use crate::sync::{Barrier, BarrierKind};
 use std::collections::BTreeMap;
-use work::Billed;
+use work::Frames;
 pub use work::{TileWork, work};
 
 /// The most pieces a tile may be asked to have.
@@ -60,8 +68,12 @@ macro_rules! tile_schemes {
                 }
             }
 
-            fn run<W: TileWork>(&mut self, machine: &M, work: &W) -> Result<Vec<Share<W::Found>>, RunError> {
-                match self { $(AnyScheme::$Scheme(scheme) => scheme.run(machine, work)),* }
+            fn run<W: TileWork>(
+                &mut self,
+                machine: &M,
+                frames: &Frames<'_, M, W>,
+            ) -> Result<Vec<Share<W::Found>>, RunError> {
+                match self { $(AnyScheme::$Scheme(scheme) => scheme.run(machine, frames)),* }
             }
         }
     };
@@ -73,6 +85,9 @@ tile_schemes! {
     interleaved => Interleaved,
     fixed_tiles => FixedTiles,
     decreasing_tiles => DecreasingTiles,
+    per_pixel_queue => PerPixelQueue,
+    work_stealing => WorkStealing,
+    rayon_iter => RayonIter,
 }
 
 /// A scheme set up for a machine and a number of processors. It keeps its counter and list from run to run.
@@ -80,6 +95,9 @@ pub struct Scheme<M: Machine> {
     scheme: AnyScheme<M>,
     about: &'static About,
     processors: usize,
+    barrier_kind: BarrierKind,
+    /// Made when it is first needed.
+    barrier: Option<Barrier<M>>,
 }
 
 impl<M: Machine> Scheme<M> {
@@ -95,9 +113,10 @@ impl<M: Machine> Scheme<M> {
     ) -> Result<Self, SettingError> {
         let settings = Settings::new(name, settings);
         let scheme = AnyScheme::new(name, machine, processors.max(1), &settings)?;
+        let barrier_kind = settings.barrier(machine)?;
         settings.finish()?;
         let about = SCHEMES.iter().find(|known| known.name == name).expect("it was just made");
-        Ok(Scheme { scheme, about, processors })
+        Ok(Scheme { scheme, about, processors, barrier_kind, barrier: None })
     }
 
     /// Shares out `work` over the processors; returns what each of them found and how many pieces it worked
@@ -107,7 +126,31 @@ impl<M: Machine> Scheme<M> {
     /// [`RunError`]. After a failed run the scheme can be used again.
     pub fn run<W: TileWork>(&mut self, machine: &M, work: &W) -> Result<Vec<Share<W::Found>>, RunError> {
         machine.check_processors(self.processors)?;
-        self.scheme.run(machine, &Billed(work))
+        self.scheme.run(machine, &Frames { works: std::slice::from_ref(work), barrier: None })
+    }
+
+    /// Shares out frame after frame over the processors in one run, with a barrier between each two; returns what
+    /// each processor found in all of them, and how many of their pieces it worked on, in the order of their
+    /// numbers. No piece of a frame is begun before the last of the frame before is done.
+    ///
+    /// # Errors
+    /// As [`Scheme::run`].
+    ///
+    /// # Panics
+    /// If the frames do not have the same number of pieces.
+    pub fn run_frames<W: TileWork>(
+        &mut self,
+        machine: &M,
+        works: &[W],
+    ) -> Result<Vec<Share<W::Found>>, RunError> {
+        machine.check_processors(self.processors)?;
+        let Some(first) = works.first() else { return Ok(Vec::new()) };
+        assert!(works.iter().all(|work| work.pieces() == first.pieces()), "frames of different size in one run");
+        let (kind, processors) = (self.barrier_kind, self.processors);
+        let make = || Barrier::new(machine, kind, Layout::Padded, processors).expect("the settings were checked");
+        let barrier = self.barrier.get_or_insert_with(make);
+        barrier.reset();
+        self.scheme.run(machine, &Frames { works, barrier: Some(barrier) })
     }
 
     /// The scheme's line in the list of schemes.

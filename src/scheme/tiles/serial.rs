@@ -1,5 +1,6 @@
 //! One processor, all pieces in one tile: what every speedup is measured against.
 
+use super::work::Frames;
 use super::{Share, TileWork};
 use crate::machine::{Machine, RunError};
 use crate::scheme::{SettingError, Settings};
@@ -19,14 +20,15 @@ impl<M: Machine> Serial<M> {
     pub(super) fn run<W: TileWork>(
         &mut self,
         machine: &M,
-        work: &W,
+        frames: &Frames<'_, M, W>,
     ) -> Result<Vec<Share<W::Found>>, RunError> {
         let share = machine.alone(|cpu| {
-            let (mut found, pieces) = (work.found(), work.pieces());
-            if pieces > 0 {
-                work.work_on(0..pieces, &mut found, cpu);
+            let (mut share, pieces) = (frames.share(), frames.pieces());
+            for work in frames.works().filter(|_| pieces > 0) {
+                share.visited += pieces as u64;
+                work.work_on(0..pieces, &mut share.found, cpu);
             }
-            Share { found, visited: pieces as u64 }
+            share
         })?;
         Ok(vec![share])
     }

@@ -5,7 +5,7 @@
 //! the slowest; uneven pieces are its end. A processor has the same pieces in each run, and so they stay in
 //! its cache.
 
-use super::work::run;
+use super::work::Frames;
 use super::{Share, TileWork};
 use crate::machine::{Machine, Processor, RunError};
 use crate::scheme::{SettingError, Settings};
@@ -28,12 +28,12 @@ impl<M: Machine> StaticBlocks<M> {
     pub(super) fn run<W: TileWork>(
         &mut self,
         machine: &M,
-        work: &W,
+        frames: &Frames<'_, M, W>,
     ) -> Result<Vec<Share<W::Found>>, RunError> {
-        let (each, odd) = (work.pieces() / self.processors, work.pieces() % self.processors);
+        let (each, odd) = (frames.pieces() / self.processors, frames.pieces() % self.processors);
         // The first `odd` parts have one piece more.
         let start = |p: usize| each * p + p.min(odd);
-        run(machine, self.processors, work, |cpu, turn| {
+        frames.run(machine, self.processors, || (), |cpu, turn| {
             (turn == 0).then(|| start(cpu.id())..start(cpu.id() + 1))
         })
     }

@@ -11,7 +11,7 @@ mod fetch_op;
 mod system;
 mod tree;
 
-use crate::machine::{Layout, Machine};
+use crate::machine::{Activity, Layout, Machine, Processor};
 
 /// What a kind of barrier does.
 trait Turns<M: Machine>: Sized {
@@ -52,7 +52,9 @@ macro_rules! barrier_kinds {
             /// done between two frames by one processor while the others are known to do nothing.
             #[inline]
             pub fn wait_then(&self, cpu: &M::Processor, last: impl FnOnce()) {
-                match &self.barrier { $(AnyBarrier::$kind(barrier) => barrier.wait_then(cpu, last)),* }
+                cpu.during(Activity::Barrier, || match &self.barrier {
+                    $(AnyBarrier::$kind(barrier) => barrier.wait_then(cpu, last)),*
+                });
             }
 
             /// Makes the barrier as new. Nobody may be waiting; after a failed run, in which some came and others

@@ -13,6 +13,7 @@ mod test_and_test_and_set;
 mod ticket;
 
 use crate::machine::{Layout, Machine, Processor, Shared, Word};
+use std::sync::atomic::Ordering;
 
 /// Declares the kinds: the list is the table of contents.
 macro_rules! lock_kinds {
@@ -87,6 +88,13 @@ impl<M: Machine> Lock<M> {
     /// A free lock for `processors` processors.
     pub fn new(machine: &M, kind: LockKind, layout: Layout, processors: usize) -> Self {
         Lock { kind, words: machine.alloc(kind.words(processors), layout, |_| Word::new(0)) }
+    }
+
+    /// Makes the lock as new; nobody may hold it or wait for it. After a failed run it must be called: whoever was
+    /// ended while waiting stands in the queue for ever.
+    pub fn reset(&self) {
+        // ORDERING: Relaxed: between runs.
+        self.words.iter().for_each(|word| word.store(0, Ordering::Relaxed));
     }
 
     /// Runs `body` while holding the lock.

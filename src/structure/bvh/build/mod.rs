@@ -27,6 +27,9 @@ mod grow;
 mod lanes;
 mod morton;
 mod spatial_median;
+mod sweep_sah;
+#[cfg(test)]
+mod tests;
 mod yard;
 
 use super::BinaryBvh;
@@ -163,6 +166,7 @@ macro_rules! builders {
 
 builders! {
     binned_sah => BinnedSah,
+    sweep_sah => SweepSah,
     spatial_median => SpatialMedian,
     morton => Morton,
 }

@@ -107,10 +107,10 @@ impl SweepSah {
         for (at, item) in along[axis][range.clone()].iter().enumerate() {
             is_right[*item as usize] = at >= left;
         }
-        for list in along.iter_mut().enumerate().filter(|(other, _)| *other != axis).map(|(_, list)| list) {
+        for (_, list) in along.iter_mut().enumerate().filter(|(other, _)| *other != axis) {
             let list = &mut list[range.clone()];
             let (lefts, rights) = numbers[..count].split_at_mut(left);
-            let (mut sides, mut at) = ([lefts, rights], [0, 0]);
+            let (sides, mut at) = ([lefts, rights], [0, 0]);
             for item in &*list {
                 let side = usize::from(is_right[*item as usize]);
                 sides[side][at[side]] = *item;

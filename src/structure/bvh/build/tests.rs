@@ -244,3 +244,53 @@ fn refitting_what_did_not_move_changes_nothing() {
         assert!(bvh.cost(1.0, 1.0) > built.cost(1.0, 1.0), "{name}: shuffled items cost more");
     });
 }
+
+mod phases {
+    use super::*;
+    use crate::structure::bvh::build::phased::{Alone, Phased, Team, Way};
+
+    /// A team that says it is of many, and does pieces back to front.
+    struct Backwards(usize);
+
+    impl Team for Backwards {
+        type Error = BuildError;
+        fn processors(&self) -> usize {
+            self.0
+        }
+        fn each(&mut self, pieces: usize, work: impl Fn(usize) + Sync) -> Result<(), BuildError> {
+            (0..pieces).rev().for_each(work);
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn the_hierarchy_is_the_same_whatever_the_team() {
+        let settings = Settings::default();
+        let many = [("many", boxes_of(&scattered(30_000, 11)))];
+        for (name, way) in Way::ALL {
+            let mut phased = Phased::new(way, &settings).unwrap();
+            for (what, boxes) in nasty().into_iter().chain(many.clone()) {
+                let input = Input::of(&boxes);
+                let mut alone = BinaryBvh::default();
+                phased.build(&input, &mut alone, &mut Alone).unwrap();
+                alone.validate(&boxes).unwrap_or_else(|error| panic!("{name}, {what}: {error}"));
+                assert!(alone.statistics().depth <= MOST_DEPTH);
+                if way == Way::SahSah {
+                    let mut serial = BinaryBvh::default();
+                    Builder::new("binned_sah", &settings).unwrap().build(&input, &mut serial).unwrap();
+                    assert_eq!(alone, serial, "{name}, {what}: in phases and not");
+                }
+                for processors in [2, 3, 64] {
+                    let mut bvh = BinaryBvh::default();
+                    phased.build(&input, &mut bvh, &mut Backwards(processors)).unwrap();
+                    assert_eq!(bvh, alone, "{name}, {what}: {processors} processors");
+                }
+            }
+            let mut bad = many[0].1.clone();
+            bad[29_000] = Aabb::EMPTY;
+            bad[700].min.x = f32::NAN;
+            let error = phased.build(&Input::of(&bad), &mut BinaryBvh::default(), &mut Backwards(4)).unwrap_err();
+            assert!(matches!(error, BuildError::NoBox { item: 700, .. }), "{error}");
+        }
+    }
+}

@@ -75,6 +75,22 @@ impl BinaryBvh {
         self.nodes.iter().map(weigh).sum()
     }
 
+    /// Which nodes are below one.
+    ///
+    /// # Panics
+    /// If there is no such node.
+    pub fn below(&self, node: usize) -> std::ops::Range<usize> {
+        let start = self.nodes[node].first as usize;
+        let (mut at, mut end) = (node, start);
+        // What is numbered last is below the second child, or below the first if that is a leaf.
+        while !self.nodes[at].is_leaf() {
+            let [left, right] = self.nodes[at].children();
+            end = right + 1;
+            at = if self.nodes[right].is_leaf() { left } else { right };
+        }
+        if at == node { 0..0 } else { start..end }
+    }
+
     /// Counts what there is. The hierarchy is valid.
     pub fn statistics(&self) -> BvhStatistics {
         let mut told = BvhStatistics {

@@ -27,6 +27,11 @@ pub(super) struct Plane {
 }
 
 impl Plane {
+    /// The first bin on its right.
+    pub(super) fn bin(&self) -> usize {
+        self.bin as usize
+    }
+
     /// Which side an item is on. The same two operations that gave it its bin, which is why the counts of the bins are
     /// those of the sides.
     #[inline(always)]
@@ -54,6 +59,11 @@ impl Grating {
             if extent > LEAST_EXTENT { bins as f32 / extent } else { 0.0 }
         };
         Self { from: [0, 1, 2].map(|axis| -middles.0[axis]), scale: [0, 1, 2].map(scale), bins }
+    }
+
+    /// Bins one unit of length apart, from 0.
+    pub(super) fn unit(bins: usize) -> Self {
+        Self { from: [0.0; 3], scale: [1.0; 3], bins }
     }
 
     /// Whether all middles are in one place.
@@ -111,6 +121,17 @@ impl Bins {
                 self.loads[axis][bin] += other.loads[axis][bin];
             }
         }
+    }
+
+    /// How many items a plane of the same grating leaves on its left.
+    pub(super) fn left_of(&self, plane: &Plane) -> usize {
+        self.loads[plane.axis][..plane.bin as usize].iter().map(|load| *load as u32 as usize).sum()
+    }
+
+    /// Adds items to a bin of an axis, each of weight 1.
+    pub(super) fn add(&mut self, axis: usize, bin: usize, bounds: &Box8, items: u32) {
+        self.boxes[axis][bin] = self.boxes[axis][bin].union(bounds);
+        self.loads[axis][bin] += u64::from(items) << 32 | u64::from(items);
     }
 
     /// The side left of a bin and the one right of it: box and items.

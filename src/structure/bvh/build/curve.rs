@@ -22,8 +22,8 @@ pub(super) fn sort(items: &[Item], middles: &Box8, codes: &mut [Vec<u64>; 2]) {
     codes.clear();
     let mut counts = vec![[0_u32; DIGITS]; 3];
     codes.extend(items.iter().enumerate().map(|(number, item)| {
-        let [x, y, z] = [0, 1, 2].map(|axis| spread(grating.bin(item, axis)));
-        let place = x << 2 | y << 1 | z;
+        let along = |axis| spread(grating.bin(item, axis));
+        let place = along(0) << 2 | along(1) << 1 | along(2);
         for (digit, counts) in counts.iter_mut().enumerate() {
             counts[(place >> (digit as u32 * AXIS_BITS)) as usize % DIGITS] += 1;
         }

@@ -9,7 +9,7 @@ use crate::structure::bvh::BinaryNode;
 
 /// Below this many nodes from the root, items are halved as they lie: boxes that grow by powers would otherwise make
 /// a hierarchy as deep as there are powers of two.
-const DEEPEST_CUT: u32 = 64;
+pub(super) const DEEPEST_CUT: u32 = 64;
 
 /// Where a node's items are: the box around them, and the box around their middles, twice its size.
 #[derive(Clone, Copy, Debug)]

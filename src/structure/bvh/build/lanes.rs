@@ -17,6 +17,7 @@ impl Box8 {
     };
 
     /// Adding zero turns -0 to 0, so that it never matters which of two zeros is met first.
+    #[inline(always)]
     pub(super) fn new(bounds: &Aabb) -> Self {
         let (low, high) = (-(bounds.min + 0.0), bounds.max + 0.0);
         Self([low.x, low.y, low.z, 0.0, high.x, high.y, high.z, 0.0])
@@ -29,7 +30,11 @@ impl Box8 {
 
     #[inline(always)]
     pub(super) fn union(&self, other: &Self) -> Self {
-        Self(std::array::from_fn(|i| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
+        let mut lanes = other.0;
+        for (lane, own) in lanes.iter_mut().zip(self.0) {
+            *lane = if own > *lane { own } else { *lane };
+        }
+        Self(lanes)
     }
 
     /// Twice the middle on an axis.
@@ -38,11 +43,19 @@ impl Box8 {
         self.0[axis + 4] - self.0[axis]
     }
 
+    /// Twice the middle.
+    #[inline(always)]
+    pub(super) fn middles(&self) -> [f32; 3] {
+        [self.middle(0), self.middle(1), self.middle(2)]
+    }
+
     /// The box of one point.
+    #[inline(always)]
     pub(super) fn of_point(at: [f32; 3]) -> Self {
         Self([-at[0], -at[1], -at[2], 0.0, at[0], at[1], at[2], 0.0])
     }
 
+    #[inline(always)]
     pub(super) fn size(&self, axis: usize) -> f32 {
         self.0[axis + 4] + self.0[axis]
     }
@@ -50,7 +63,7 @@ impl Box8 {
     /// Half the surface; as [`Lanes::half_area`] has it.
     #[inline(always)]
     pub(super) fn half_area(&self) -> f32 {
-        let [x, y, z] = [0, 1, 2].map(|axis| self.size(axis));
+        let (x, y, z) = (self.size(0), self.size(1), self.size(2));
         (x * y + y * z) + z * x
     }
 }
@@ -61,6 +74,7 @@ impl Box8 {
 pub(super) struct Item(Box8);
 
 impl Item {
+    #[inline(always)]
     pub(super) fn new(bounds: &Box8, number: u32, weight: u32) -> Self {
         let mut lanes = bounds.0;
         lanes[3] = f32::from_bits(number);
@@ -143,7 +157,7 @@ impl Lanes for Plain {
     }
     #[inline(always)]
     unsafe fn middle(self) -> [f32; 3] {
-        [0, 1, 2].map(|axis| self.0.middle(axis))
+        self.0.middles()
     }
     #[inline(always)]
     unsafe fn of_point(at: [f32; 3]) -> Self {
@@ -159,8 +173,8 @@ impl Lanes for Plain {
     }
     #[inline(always)]
     unsafe fn bins(at: [f32; 3], from: [f32; 3], scale: [f32; 3], last: i32) -> [i32; 4] {
-        let [x, y, z] = [0, 1, 2].map(|axis| (((at[axis] - from[axis]) * scale[axis]) as i32).min(last));
-        [x, y, z, 0]
+        let bin = |axis: usize| (((at[axis] - from[axis]) * scale[axis]) as i32).min(last);
+        [bin(0), bin(1), bin(2), 0]
     }
 }
 

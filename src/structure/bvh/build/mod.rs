@@ -23,10 +23,17 @@
 mod binned_sah;
 mod bins;
 mod curve;
+mod grid;
 mod grow;
+mod histograms;
 mod lanes;
 mod morton;
+pub mod phased;
 mod spatial_median;
+mod sweep_sah;
+mod top;
+#[cfg(test)]
+mod tests;
 mod yard;
 
 use super::BinaryBvh;
@@ -53,6 +60,17 @@ impl<'a> Input<'a> {
     /// Items known by their boxes alone.
     pub fn of(boxes: &'a [Aabb]) -> Self {
         Self { boxes, triangles: None }
+    }
+
+    fn check(&self) -> Result<(), BuildError> {
+        let items = self.boxes.len();
+        if items > yard::MOST_ITEMS {
+            return Err(BuildError::TooMany { items });
+        }
+        if let Some(triangles) = self.triangles.map(<[_]>::len).filter(|triangles| *triangles != items) {
+            return Err(BuildError::Triangles { triangles, boxes: items });
+        }
+        Ok(())
     }
 }
 
@@ -163,6 +181,7 @@ macro_rules! builders {
 
 builders! {
     binned_sah => BinnedSah,
+    sweep_sah => SweepSah,
     spatial_median => SpatialMedian,
     morton => Morton,
 }
@@ -185,13 +204,7 @@ impl Builder {
     /// # Errors
     /// [`BuildError`]; what `bvh` holds then is of no use.
     pub fn build(&mut self, input: &Input<'_>, bvh: &mut BinaryBvh) -> Result<(), BuildError> {
-        let items = input.boxes.len();
-        if items > yard::MOST_ITEMS {
-            return Err(BuildError::TooMany { items });
-        }
-        if let Some(triangles) = input.triangles.map(<[_]>::len).filter(|triangles| *triangles != items) {
-            return Err(BuildError::Triangles { triangles, boxes: items });
-        }
+        input.check()?;
         self.0.build(input, bvh)
     }
 }

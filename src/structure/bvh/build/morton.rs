@@ -9,8 +9,9 @@
 //! curve alone makes a hierarchy that costs rays more than the few cuts by cost save.
 
 use super::binned_sah::SahRule;
+use super::bins::around;
 use super::grow::{Extent, Plot, Rule, budding, grow};
-use super::lanes::{Box8, Item};
+use super::lanes::{Box8, Item, Lanes, on_unit};
 use super::yard::{Yard, load_all, make_room};
 use super::{BuildError, Input, Settings, curve};
 use crate::structure::bvh::{BinaryBvh, BinaryNode};
@@ -31,7 +32,7 @@ pub(super) struct Morton {
     starts: Vec<u32>,
     clusters: Yard,
     top: BinaryBvh,
-    ends: Vec<f32>,
+    room: Vec<f32>,
 }
 
 impl Morton {
@@ -45,7 +46,7 @@ impl Morton {
             starts: Vec::new(),
             clusters: Yard::default(),
             top: BinaryBvh::default(),
-            ends: Vec::new(),
+            room: Vec::new(),
         }
     }
 
@@ -86,7 +87,7 @@ impl Morton {
         for (i, ends) in self.starts.windows(2).enumerate() {
             let items = &self.items[1][ends[0] as usize..ends[1] as usize];
             let bounds = items.iter().fold(Box8::EMPTY, |all, item| all.union(&item.bounds()));
-            let middles = Box8::of_point([0, 1, 2].map(|axis| bounds.middle(axis)));
+            let middles = Box8::of_point(bounds.middles());
             clusters[i] = Item::new(&bounds, i as u32, items.len() as u32);
             extent = extent.union(&Extent { bounds, middles });
         }
@@ -117,8 +118,9 @@ impl Morton {
             for (place, item) in order[filled..].iter_mut().zip(items) {
                 *place = item.number();
             }
-            self.ends.resize(items.len().max(self.ends.len()), 0.0);
-            cut(&self.within, items, filled, to, nodes, &mut self.ends);
+            self.room.resize(items.len().max(self.room.len()), 0.0);
+            let bounds = around(self.within.unit, items)[0];
+            cut(&self.within, items, &bounds, filled, to, nodes, &mut self.room);
             filled += items.len();
         }
     }
@@ -129,10 +131,11 @@ impl Morton {
 fn cut(
     rule: &SahRule,
     items: &[Item],
+    bounds: &Box8,
     first: usize,
     node: usize,
     nodes: &mut Vec<BinaryNode>,
-    right: &mut [f32],
+    room: &mut [f32],
 ) {
     let leaf = |nodes: &mut Vec<BinaryNode>| {
         nodes[node].first = first as u32;
@@ -141,31 +144,46 @@ fn cut(
     if items.len() == 1 {
         return leaf(nodes);
     }
-    let mut around = Box8::EMPTY;
-    for at in (1..items.len()).rev() {
-        around = around.union(&items[at].bounds());
-        right[at] = around.half_area() * (items.len() - at) as f32;
-    }
-    let (mut best, mut middle) = (f32::INFINITY, items.len() / 2);
-    around = Box8::EMPTY;
-    for at in 1..items.len() {
-        around = around.union(&items[at - 1].bounds());
-        let cost = around.half_area() * at as f32 + right[at];
-        if cost < best {
-            (best, middle) = (cost, at);
-        }
-    }
-    let whole = around.union(&items[items.len() - 1].bounds());
-    if items.len() <= rule.most_in_leaf() && !rule.pays(items.len(), &whole, best) {
+    let (sides, middle) = sweep(rule.unit, items, room);
+    if items.len() <= rule.most_in_leaf() && !rule.pays(items.len(), bounds, sides) {
         return leaf(nodes);
     }
     let (left, rest) = items.split_at(middle);
     let pair = nodes.len();
     nodes[node].first = pair as u32;
     nodes[node].count = 0;
-    for side in [left, rest] {
-        nodes.push(budding(&side.iter().fold(Box8::EMPTY, |all, item| all.union(&item.bounds()))));
+    let bounds = [left, rest].map(|side| around(rule.unit, side)[0]);
+    nodes.extend(bounds.each_ref().map(budding));
+    cut(rule, left, &bounds[0], first, pair, nodes, room);
+    cut(rule, rest, &bounds[1], first + middle, pair + 1, nodes, room);
+}
+
+on_unit! {
+    /// Where cutting a run of at least two items costs least: half the areas of both sides, each times its items; and
+    /// how many items are left of it. Room is as long as the run.
+    fn sweep(items: &[Item], room: &mut [f32]) -> (f32, usize) = sweep_with
+}
+
+/// # Safety
+/// The processor has the unit.
+#[inline(always)]
+unsafe fn sweep_with<L: Lanes>(items: &[Item], room: &mut [f32]) -> (f32, usize) {
+    let mut best = (f32::INFINITY, items.len() / 2);
+    // SAFETY: the unit is there.
+    unsafe {
+        let mut around = L::load(&Box8::EMPTY);
+        for at in (1..items.len()).rev() {
+            around = around.union(L::load_item(&items[at]));
+            room[at] = around.half_area() * (items.len() - at) as f32;
+        }
+        around = L::load(&Box8::EMPTY);
+        for at in 1..items.len() {
+            around = around.union(L::load_item(&items[at - 1]));
+            let cost = around.half_area() * at as f32 + room[at];
+            if cost < best.0 {
+                best = (cost, at);
+            }
+        }
     }
-    cut(rule, left, first, pair, nodes, right);
-    cut(rule, rest, first + middle, pair + 1, nodes, right);
+    best
 }

@@ -115,7 +115,7 @@ pub(super) fn load(
             return Err(BuildError::NoBox { item: first + i, bounds: *bounds });
         }
         let bounds = Box8::new(&if view == View::PLAIN { *bounds } else { view.apply(bounds) });
-        let middle = Box8::of_point([0, 1, 2].map(|axis| bounds.middle(axis)));
+        let middle = Box8::of_point(bounds.middles());
         *item = Item::new(&bounds, (first + i) as u32, 1);
         extent = extent.union(&Extent { bounds, middles: middle });
     }

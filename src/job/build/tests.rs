@@ -1,0 +1,80 @@
+use super::*;
+use crate::geometry::Aabb;
+use crate::machine::{Simulated, Threads};
+use crate::scheme::tiles::SCHEMES;
+use crate::structure::bvh::build::phased::{Alone, Way};
+use crate::structure::bvh::build::{Builder, Settings};
+use glam::Vec3;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+fn boxes(count: usize, turn: usize) -> Vec<Aabb> {
+    let at = |i: usize| Vec3::new((i * 7919 % 1009) as f32, (i * 104_729 % 997) as f32, (i * turn % 883) as f32);
+    (0..count).map(at).map(|at| Aabb { min: at, max: at + 2.5 }).collect()
+}
+
+/// Every scheme and way on a machine, held against a team of one.
+fn same_everywhere<M: Machine>(machine: &M, processors: usize) {
+    let boxes = boxes(20_000, 1_299_709);
+    for (name, way) in Way::ALL {
+        let mut builder = Phased::new(way, &Settings::default()).unwrap();
+        let mut expected = BinaryBvh::default();
+        builder.build(&Input::of(&boxes), &mut expected, &mut Alone).unwrap();
+        expected.validate(&boxes).unwrap();
+        for about in SCHEMES {
+            let processors = if about.name == "serial" { 1 } else { processors };
+            let mut scheme = Scheme::new(about.name, machine, processors, Default::default()).unwrap();
+            let mut bvh = BinaryBvh::default();
+            build(&mut builder, &Input::of(&boxes), &mut bvh, machine, &mut scheme, processors).unwrap();
+            assert_eq!(bvh, expected, "{name} by {}", about.name);
+            let mut bad = boxes.clone();
+            bad[12_345].max.x = f32::NAN;
+            let error = build(&mut builder, &Input::of(&bad), &mut bvh, machine, &mut scheme, processors);
+            let error = error.unwrap_err().to_string();
+            assert!(error.contains("12345"), "{error}");
+        }
+    }
+}
+
+fn refitted_everywhere<M: Machine>(machine: &M, processors: usize) {
+    for count in [0, 1, 2, 9, 3000] {
+        let (before, after) = (boxes(count, 3), boxes(count, 1_299_709));
+        let mut bvh = BinaryBvh::default();
+        Builder::new("binned_sah", &Settings::default()).unwrap().build(&Input::of(&before), &mut bvh).unwrap();
+        let mut expected = bvh.clone();
+        crate::structure::bvh::refit::refit(&mut expected, &after);
+        let job = Refit::new(machine, processors, &bvh);
+        for _ in 0..3 {
+            let renewed: Vec<AtomicUsize> = (0..50).map(|_| AtomicUsize::new(0)).collect();
+            let renew = |piece: usize| {
+                // ORDERING: Relaxed: only counted, and read after the run.
+                renewed[piece].fetch_add(1, Ordering::Relaxed);
+            };
+            job.run(machine, &mut bvh, |item| after[item as usize], 50, renew).unwrap();
+            assert_eq!(bvh, expected, "{count} items");
+            // ORDERING: Relaxed: the run has ended.
+            assert!(renewed.iter().all(|times| times.load(Ordering::Relaxed) == 1), "each piece once");
+        }
+    }
+}
+
+#[test]
+fn a_hierarchy_built_by_threads_is_the_same() {
+    let machine = Threads::new(4).unwrap();
+    for processors in [1, 2, 4] {
+        same_everywhere(&machine, processors);
+    }
+}
+
+#[test]
+fn a_hierarchy_built_by_simulated_processors_is_the_same() {
+    same_everywhere(&Simulated::preset("e4000").unwrap(), 7);
+}
+
+#[test]
+fn refitting_is_the_same_on_every_machine() {
+    let threads = Threads::new(3).unwrap();
+    for processors in [1, 2, 3] {
+        refitted_everywhere(&threads, processors);
+    }
+    refitted_everywhere(&Simulated::preset("e4000").unwrap(), 7);
+}

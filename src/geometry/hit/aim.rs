@@ -14,19 +14,19 @@ const LEAST_PART: f32 = 1.0 / (1u128 << 100) as f32;
 /// A ray in a scale's lengths, its direction's greatest part between 1 and 2, and what tests ask of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
-    origin: Vec3,
-    direction: Vec3,
+    pub(super) origin: Vec3,
+    pub(super) direction: Vec3,
     /// One over the direction, lessened and enlarged by the slack.
-    first_rate: Vec3,
-    last_rate: Vec3,
+    pub(super) first_rate: Vec3,
+    pub(super) last_rate: Vec3,
     pub(crate) near: f32,
     pub(crate) far: f32,
     /// What the watertight test takes from x and y for each z, and one over the direction's part along z, by its axes.
     shear: [f32; 3],
     /// The axes that test calls x, y and z: z is where the ray goes most.
-    axes: [u8; 3],
+    pub(super) axes: [u8; 3],
     /// Bit `axis` is set if the ray goes down that axis.
-    pub(crate) octant: u8,
+    pub(super) octant: u8,
     /// Lengths of the ray's own direction in each of this one's, and where its `t` begins.
     stretch: f32,
     start: f32,
@@ -37,11 +37,12 @@ impl Aim {
     /// finite, its direction is zero, its ends are NaN, or no number of its lengths leads through the scene.
     ///
     /// A `near` below 0 moves the origin, for what is before it is looked for as everything is: from the start on.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(ray: &Ray, scale: Scale) -> Option<Self> {
         let start = ray.near.min(0.0);
         let from = if start < 0.0 { ray.at(start) } else { ray.origin };
-        let (near, far) = (ray.near - start, ray.far - start);
+        // Adding zero takes the sign from a zero.
+        let (near, far) = (ray.near - start + 0.0, ray.far - start);
         let longest = ray.direction.abs().max_element();
         let lengthen = to_one(longest);
         let origin = scale.point(from);
@@ -61,8 +62,10 @@ impl Aim {
             return None;
         }
         let rate = direction.recip();
-        let z = direction.abs().max_position();
-        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+        let sizes = direction.abs();
+        let z = usize::from(sizes.y > sizes.x);
+        let z = if sizes.z > sizes[z] { 2 } else { z };
+        let [x, y] = [[1, 2], [2, 0], [0, 1]][z];
         Some(Self {
             origin,
             direction,
@@ -82,11 +85,6 @@ impl Aim {
     #[inline]
     pub(crate) fn own_t(&self, t: f32) -> f32 {
         t * self.stretch + self.start
-    }
-
-    /// Whether one beam can take this one and the other.
-    pub(crate) fn goes_with(&self, other: &Self) -> bool {
-        self.octant == other.octant && self.axes == other.axes
     }
 }
 
@@ -108,8 +106,7 @@ impl<L> Beam<L> {
     /// pair differs in the last bit.
     #[inline(always)]
     pub(crate) fn rows(&self) -> [usize; 3] {
-        let [x, y, z] = self.rises;
-        [usize::from(!x), 2 + usize::from(!y), 4 + usize::from(!z)]
+        rows(self.rises)
     }
 }
 
@@ -133,10 +130,54 @@ impl<L: Lanes> Beam<L> {
             }
         }
     }
+
+    /// Some rays, one a lane, which have octant and axes in common.
+    ///
+    /// # Safety
+    /// The processor has the lanes' vector unit, and there are as many rays from `from` on as lanes.
+    #[inline(always)]
+    pub(crate) unsafe fn several(aims: &[Aim; 16], from: usize) -> Self {
+        // By number of the field, then by ray.
+        let mut columns = [[0.0f32; 16]; 15];
+        for (lane, aim) in aims[from..from + L::LEN].iter().enumerate() {
+            let Aim { origin, direction, first_rate, last_rate, shear, .. } = aim;
+            let parts = [*origin, *direction, *first_rate, *last_rate, Vec3::from_array(*shear)];
+            for (part, three) in parts.iter().zip(columns.as_chunks_mut::<3>().0) {
+                for (column, value) in three.iter_mut().zip(part.to_array()) {
+                    column[lane] = value;
+                }
+            }
+        }
+        let three = columns.as_chunks::<3>().0;
+        // SAFETY: the processor is the caller's, and no vector has more than 16 lanes.
+        unsafe {
+            Self {
+                origin: load(&three[0]),
+                direction: load(&three[1]),
+                first_rate: load(&three[2]),
+                last_rate: load(&three[3]),
+                shear: load(&three[4]),
+                axes: axes(&aims[0]),
+                rises: rises(&aims[0]),
+            }
+        }
+    }
 }
 
 #[inline(always)]
-unsafe fn spread<L: Lanes>([x, y, z]: [f32; 3]) -> [L; 3] {
+unsafe fn load<L: Lanes>([x, y, z]: &[[f32; 16]; 3]) -> [L; 3] {
+    // SAFETY: the processor is the caller's, and no vector has more than 16 lanes.
+    unsafe { [L::load(x, 0), L::load(y, 0), L::load(z, 0)] }
+}
+
+/// By axis, which of six rows of planes rays come to first.
+#[inline(always)]
+pub(super) fn rows([x, y, z]: [bool; 3]) -> [usize; 3] {
+    [usize::from(!x), 2 + usize::from(!y), 4 + usize::from(!z)]
+}
+
+#[inline(always)]
+pub(super) unsafe fn spread<L: Lanes>([x, y, z]: [f32; 3]) -> [L; 3] {
     // SAFETY: the processor is the caller's.
     unsafe { [L::splat(x), L::splat(y), L::splat(z)] }
 }
@@ -147,7 +188,8 @@ fn axes(aim: &Aim) -> [usize; 3] {
     [usize::from(x), usize::from(y), usize::from(z)]
 }
 
+/// By axis, whether a ray goes up it.
 #[inline(always)]
-fn rises(aim: &Aim) -> [bool; 3] {
+pub(super) fn rises(aim: &Aim) -> [bool; 3] {
     [aim.octant & 1 == 0, aim.octant & 2 == 0, aim.octant & 4 == 0]
 }

@@ -15,6 +15,7 @@ mod cone;
 mod fast;
 mod scale;
 mod slab;
+mod span;
 mod sphere;
 mod watertight;
 
@@ -26,6 +27,7 @@ pub use watertight::Watertight;
 
 pub(crate) use aim::{Aim, Beam};
 pub(crate) use slab::slab;
+pub(crate) use span::Span;
 
 use super::lanes::Lanes;
 
@@ -85,7 +87,7 @@ pub(crate) unsafe fn meet<L: Lanes, T: TriangleTest>(
     // SAFETY: the processor is the caller's.
     unsafe {
         let found = T::within_edges(beam, triangles)?;
-        let (x, y, z) = (sides(beam, triangles, 0), sides(beam, triangles, 1), sides(beam, triangles, 2));
+        let (x, y, z) = (sides(beam.rises, triangles, 0), sides(beam.rises, triangles, 1), sides(beam.rises, triangles, 2));
         let all = [L::splat(f32::NEG_INFINITY), L::splat(f32::INFINITY)];
         let [enters, leaves] = slab(beam, all, [x[0], y[0], z[0]], [x[1], y[1], z[1]]);
         // A NaN stays one, as the second argument does.
@@ -94,14 +96,18 @@ pub(crate) unsafe fn meet<L: Lanes, T: TriangleTest>(
     }
 }
 
-/// The planes of the triangles' boxes on an axis, that which the rays come to first and the other.
+/// The planes of the triangles' boxes on an axis, that which the rays come to first and the other; by axis, whether the
+/// rays rise.
+///
+/// # Safety
+/// The processor has the lanes' vector unit, and `axis` is below 3.
 #[inline(always)]
-unsafe fn sides<L: Lanes>(beam: &Beam<L>, triangles: &impl Corners<L>, axis: usize) -> [L; 2] {
+pub(crate) unsafe fn sides<L: Lanes>(rises: [bool; 3], triangles: &impl Corners<L>, axis: usize) -> [L; 2] {
     // SAFETY: the processor is the caller's.
     unsafe {
         let (a, b, c) = (triangles.at(0, axis), triangles.at(1, axis), triangles.at(2, axis));
         let (least, greatest) = (a.min(b).min(c), a.max(b).max(c));
-        if beam.rises[axis] { [least, greatest] } else { [greatest, least] }
+        if rises[axis] { [least, greatest] } else { [greatest, least] }
     }
 }
 

@@ -27,6 +27,7 @@ impl Scale {
 
 /// The power of two that brings a number that is not negative to between 1 and 2, as far as powers of two go whose
 /// inverse is normal too.
+#[inline]
 pub(super) fn to_one(value: f32) -> f32 {
     let exponent = value.to_bits() >> 23;
     f32::from_bits((254 - exponent.min(253)).min(253) << 23)

@@ -1,7 +1,7 @@
 //! Sets of rays.
 
 use crate::geometry::{Camera, Ray};
-use crate::job::trace::{Eye, whole_view};
+use crate::job::trace::{Eye, default_view};
 use crate::scene::{Scene, SplitMix64};
 use crate::structure::bvh::Intersector;
 use glam::DVec3;
@@ -49,7 +49,7 @@ pub fn ray_set(
     count: usize,
     seed: u64,
 ) -> Option<Vec<Ray>> {
-    let view = whole_view(scene, 1.0)?;
+    let view = default_view(scene, 1.0)?;
     let mut random = SplitMix64::new(seed);
     Some(match kind {
         RayKind::Camera => camera(&view, count),

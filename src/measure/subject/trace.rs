@@ -15,7 +15,7 @@ use super::{
 };
 use crate::job::trace::{
     Costed, Counts, Eye, Film, Frame, Hierarchy, Image, Look, MOST_DEPTH, MOST_PIXELS, TileCosts, Tiles,
-    Tracer, TriangleKind, World, whole_view,
+    Tracer, TriangleKind, World, default_view,
 };
 use crate::machine::{Machine, RunError, Simulated, Threads};
 use crate::record::THREADS;
@@ -112,7 +112,7 @@ impl TraceStage {
         let cameras = if options.path.is_some() || cell.settings.contains_key("scene.path") {
             super::cameras(cell, &scene, options)?.frames
         } else {
-            let view = whole_view(&scene, width as f32 / height as f32).ok_or_else(|| {
+            let view = default_view(&scene, width as f32 / height as f32).ok_or_else(|| {
                 MeasureError::Failed(format!("scene `{}`: there is nothing in it to look at", cell.scene))
             })?;
             vec![view; options.frames as usize]

@@ -7,14 +7,16 @@ mod count;
 mod nearest;
 mod packet;
 mod single;
+mod waiting;
 
 pub use count::RayCounts;
 use count::{Count, Uncounted};
 use nearest::Nearest;
+use packet::{RAYS, together as walk_together};
 use single::through as walk_single;
 
 use super::{Intersector, WideBvh};
-use crate::geometry::hit::{Aim, TriangleTest};
+use crate::geometry::hit::{Aim, Span, TriangleTest};
 use crate::geometry::lanes::Kind;
 use crate::geometry::{Hit, Ray, Unit};
 
@@ -58,6 +60,7 @@ macro_rules! on_unit_through {
 }
 
 on_unit_through!(fn through(aim: &Aim) -> Nearest = walk_single, ANY);
+on_unit_through!(fn together(aims: &[Aim; RAYS], span: &Span) -> Option<[Nearest; RAYS]> = walk_together);
 
 impl<T: TriangleTest> WideBvh<T> {
     /// The nearest hit, by a vector unit of one's choice.
@@ -82,6 +85,44 @@ impl<T: TriangleTest> WideBvh<T> {
         self.occluded_to(Unit::best(), ray, counts)
     }
 
+    /// The nearest hits of rays that go much the same way, by a vector unit of one's choice.
+    ///
+    /// # Panics
+    /// If there are not as many `hits` as `rays`.
+    pub fn closest_coherent_on(&self, unit: Unit, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), hits.len(), "a place for the hit of each ray");
+        for (rays, hits) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)) {
+            if !self.packet(unit, rays, hits) {
+                for (ray, hit) in rays.iter().zip(hits) {
+                    *hit = self.closest_on(unit, ray);
+                }
+            }
+        }
+    }
+
+    /// The nearest hits of a packet. False, and no hits, if its rays are to go on their own.
+    fn packet(&self, unit: Unit, rays: &[Ray], hits: &mut [Option<Hit>]) -> bool {
+        // What is left over at the end is not worth it.
+        if rays.len() < RAYS / 2 {
+            return false;
+        }
+        let Some(first) = Aim::new(&rays[0], self.scale) else { return false };
+        let mut aims = [first; RAYS];
+        for (aim, ray) in aims.iter_mut().zip(rays) {
+            match Aim::new(ray, self.scale) {
+                Some(made) => *aim = made,
+                None => return false,
+            }
+        }
+        let found =
+            Span::of(&aims).and_then(|span| together::<T, _>(unit, self, &mut Uncounted, &aims, &span));
+        let Some(found) = found else { return false };
+        for ((hit, nearest), aim) in hits.iter_mut().zip(&found).zip(&aims) {
+            *hit = nearest.hit(aim);
+        }
+        true
+    }
+
     #[inline]
     fn closest_to(&self, unit: Unit, ray: &Ray, count: &mut impl Count) -> Option<Hit> {
         let aim = Aim::new(ray, self.scale)?;
@@ -103,5 +144,9 @@ impl<T: TriangleTest> Intersector for WideBvh<T> {
     #[inline]
     fn occluded(&self, ray: &Ray) -> bool {
         self.occluded_on(Unit::best(), ray)
+    }
+
+    fn closest_coherent(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        self.closest_coherent_on(Unit::best(), rays, hits);
     }
 }

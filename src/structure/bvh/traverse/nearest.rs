@@ -44,17 +44,51 @@ impl Nearest {
     /// The processor has the lanes' vector unit.
     #[inline(always)]
     pub(super) unsafe fn take<L: Lanes>(&mut self, found: &Found<L>, lanes: u64, items: &[u32]) {
-        let mut columns = [[0.0f32; 16]; 3];
-        for (column, part) in columns.iter_mut().zip([found.t, found.u, found.v]) {
-            // SAFETY: no vector has more than 16 lanes; the processor is the caller's.
-            unsafe { part.store(column, 0) };
+        let (mut t, mut u, mut v) = ([0.0f32; 16], [0.0f32; 16], [0.0f32; 16]);
+        // SAFETY: no vector has more than 16 lanes; the processor is the caller's.
+        unsafe {
+            found.t.store(&mut t, 0);
+            found.u.store(&mut u, 0);
+            found.v.store(&mut v, 0);
         }
-        let [t, u, v] = &columns;
         let mut left = lanes;
         while left != 0 {
             let lane = left.trailing_zeros() as usize & 15;
             left &= left - 1;
             self.offer(t[lane], u[lane], v[lane], items[lane]);
         }
+    }
+
+    /// Takes for each of some rays what its lane found of one triangle, unless that lies before the ray's start. Tells
+    /// whether any is nearer than what was.
+    ///
+    /// # Safety
+    /// The processor has the lanes' vector unit, and there are as many rays as lanes.
+    #[inline(always)]
+    pub(super) unsafe fn take_each<L: Lanes>(
+        rays: &mut [Self],
+        aims: &[Aim],
+        found: &Found<L>,
+        lanes: u64,
+        item: u32,
+    ) -> bool {
+        let (mut t, mut u, mut v) = ([0.0f32; 16], [0.0f32; 16], [0.0f32; 16]);
+        // SAFETY: no vector has more than 16 lanes; the processor is the caller's.
+        unsafe {
+            found.t.store(&mut t, 0);
+            found.u.store(&mut u, 0);
+            found.v.store(&mut v, 0);
+        }
+        let mut left = lanes;
+        let mut is_nearer = false;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize & 15;
+            left &= left - 1;
+            if t[lane] >= aims[lane].near {
+                is_nearer |= t[lane] < rays[lane].t;
+                rays[lane].offer(t[lane], u[lane], v[lane], item);
+            }
+        }
+        is_nearer
     }
 }

@@ -1,22 +1,13 @@
 //! One ray on its own.
 
 use super::super::WideBvh;
-use super::super::wide::{Child, TRIANGLES, Together, WIDTH};
+use super::super::wide::{TRIANGLES, Together, WIDTH};
 use super::count::Count;
 use super::nearest::Nearest;
+use super::waiting::{PLACES, Stack};
 use crate::geometry::hit::{Aim, Beam, TriangleTest, meet, slab};
 use crate::geometry::lanes::Lanes;
 use std::mem::MaybeUninit;
-
-/// A child that waits, and where the ray enters its box.
-#[derive(Clone, Copy)]
-struct Waiting {
-    child: Child,
-    enters: f32,
-}
-
-/// How many children wait at most in a hierarchy that is not much out of balance.
-const PLACES: usize = 256;
 
 /// Takes a ray through: the nearest hit, or with `ANY` whichever is found first.
 ///
@@ -31,11 +22,11 @@ pub(super) unsafe fn through<N: Lanes, B: Lanes, T: TriangleTest, C: Count, cons
     let mut places = [const { MaybeUninit::uninit() }; PLACES];
     if bvh.waiting <= PLACES {
         // SAFETY: the processor is the caller's.
-        return unsafe { walk::<N, B, T, C, ANY>(bvh, count, aim, &mut places) };
+        return unsafe { walk::<N, B, T, C, ANY>(bvh, count, aim, Stack::of(&mut places)) };
     }
     let mut many = vec![MaybeUninit::uninit(); bvh.waiting];
     // SAFETY: as above.
-    unsafe { walk::<N, B, T, C, ANY>(bvh, count, aim, &mut many) }
+    unsafe { walk::<N, B, T, C, ANY>(bvh, count, aim, Stack::of(&mut many)) }
 }
 
 /// The walk itself. In addition: `stack` has as many places as may wait.
@@ -44,7 +35,7 @@ unsafe fn walk<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
     bvh: &WideBvh<T>,
     count: &mut C,
     aim: &Aim,
-    stack: &mut [MaybeUninit<Waiting>],
+    mut stack: Stack<'_>,
 ) -> Nearest {
     let mut nearest = Nearest::none(aim);
     if bvh.nodes.is_empty() {
@@ -53,7 +44,6 @@ unsafe fn walk<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
     // SAFETY: the processor is the caller's.
     let (beam, block_beam) = unsafe { (Beam::<N>::one(aim), Beam::<B>::one(aim)) };
     let rows = beam.rows();
-    let mut top = 0;
     let mut at = bvh.root;
     'next: loop {
         while at.blocks() == 0 {
@@ -80,30 +70,8 @@ unsafe fn walk<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
             if hit == 0 {
                 break;
             }
-            let lane = hit.trailing_zeros() as usize;
-            hit &= hit - 1;
-            let mut best = Waiting { child: node.children[lane & 7], enters: enters[lane & 7] };
-            if hit == 0 {
-                at = best.child;
-                continue;
-            }
-            let below = top;
-            while hit != 0 {
-                let lane = hit.trailing_zeros() as usize;
-                hit &= hit - 1;
-                let mut other = Waiting { child: node.children[lane & 7], enters: enters[lane & 7] };
-                if other.enters < best.enters {
-                    std::mem::swap(&mut other, &mut best);
-                }
-                // SAFETY: no more wait than the collapse counted.
-                unsafe { stack.get_unchecked_mut(top).write(other) };
-                top += 1;
-            }
-            if !ANY && top - below > 1 {
-                // SAFETY: these were just written.
-                unsafe { sort(stack.get_unchecked_mut(below..top)) };
-            }
-            at = best.child;
+            // SAFETY: there is one, and no more wait than the collapse counted.
+            at = unsafe { stack.nearest(hit, &enters, node) };
         }
         // A node none of whose boxes is met falls through with no blocks.
         for of in 0..at.blocks() {
@@ -127,32 +95,11 @@ unsafe fn walk<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
             }
         }
         loop {
-            if top == 0 {
-                return nearest;
-            }
-            top -= 1;
-            // SAFETY: what is below the top was written.
-            let waiting = unsafe { stack.get_unchecked(top).assume_init() };
-            if waiting.enters <= nearest.t {
-                at = waiting.child;
+            let Some(waiting) = stack.pop() else { return nearest };
+            if waiting.enters() <= nearest.t {
+                at = waiting.child();
                 continue 'next;
             }
-        }
-    }
-}
-
-/// Puts what waits in order, the nearest last.
-///
-/// # Safety
-/// All were written.
-#[inline(always)]
-unsafe fn sort(waiting: &mut [MaybeUninit<Waiting>]) {
-    for end in 1..waiting.len() {
-        let mut at = end;
-        // SAFETY: all were written, and `at` is above 0.
-        while at > 0 && unsafe { waiting[at - 1].assume_init().enters < waiting[at].assume_init().enters } {
-            waiting.swap(at - 1, at);
-            at -= 1;
         }
     }
 }

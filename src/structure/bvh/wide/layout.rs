@@ -32,6 +32,16 @@ impl Child {
         Self(first as u32 | (blocks as u32) << Self::BITS)
     }
 
+    #[inline(always)]
+    pub(in crate::structure::bvh) fn bits(self) -> u32 {
+        self.0
+    }
+
+    #[inline(always)]
+    pub(in crate::structure::bvh) fn from_bits(bits: u32) -> Self {
+        Self(bits)
+    }
+
     /// How many blocks; 0 of a node.
     #[inline(always)]
     pub(in crate::structure::bvh) fn blocks(self) -> usize {
@@ -112,5 +122,19 @@ impl<L: Lanes> Corners<L> for Together<'_> {
     unsafe fn at(&self, corner: usize, axis: usize) -> L {
         // SAFETY: both are below 3; the lanes are the caller's.
         unsafe { L::load(self.block.corners.get_unchecked(3 * corner + axis), self.from) }
+    }
+}
+
+/// One triangle of a block, in all lanes.
+pub(in crate::structure::bvh) struct Alone<'a> {
+    pub(in crate::structure::bvh) block: &'a Block,
+    pub(in crate::structure::bvh) lane: usize,
+}
+
+impl<L: Lanes> Corners<L> for Alone<'_> {
+    #[inline(always)]
+    unsafe fn at(&self, corner: usize, axis: usize) -> L {
+        // SAFETY: both are below 3; the lanes are the caller's.
+        unsafe { L::splat(self.block.corners.get_unchecked(3 * corner + axis)[self.lane & (TRIANGLES - 1)]) }
     }
 }

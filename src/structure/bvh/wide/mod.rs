@@ -8,7 +8,7 @@
 mod collapse;
 mod layout;
 
-pub(super) use layout::{Block, Child, Node, TRIANGLES, Together, WIDTH};
+pub(super) use layout::{Alone, Block, Child, Node, TRIANGLES, Together, WIDTH};
 
 use super::BinaryBvh;
 use crate::geometry::hit::{Scale, TriangleTest, Watertight};

@@ -1,0 +1,125 @@
+//! What rays that go much the same way have in common.
+
+use super::aim::{Aim, rises, rows, spread};
+use crate::geometry::lanes::Lanes;
+use glam::Vec3;
+
+/// How far apart directions may be that go much the same way, as shares of their greatest part.
+const APART: f32 = 0.125;
+
+/// The intervals that the parts of some rays span: of one octant, none parallel to a plane of an axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Span {
+    /// The origins that make planes seem nearest where they are come to first, and farthest where last.
+    first_origin: Vec3,
+    last_origin: Vec3,
+    /// Least and greatest.
+    first_rate: [Vec3; 2],
+    last_rate: [Vec3; 2],
+    near: f32,
+    /// The farthest end of a ray.
+    pub(crate) far: f32,
+    /// By axis, whether they go up.
+    pub(crate) rises: [bool; 3],
+}
+
+impl Span {
+    /// What these rays span. `None` if they do not go much the same way.
+    #[inline]
+    pub(crate) fn of(aims: &[Aim; 16]) -> Option<Self> {
+        let first = &aims[0];
+        let like_first = |aim: &Aim| {
+            aim.octant == first.octant
+                && aim.axes == first.axes
+                && (aim.direction - first.direction).abs().max_element() <= APART
+                && aim.last_rate.is_finite()
+        };
+        if !aims.iter().all(like_first) {
+            return None;
+        }
+        let over = |part: fn(&Aim) -> Vec3| {
+            aims.iter().fold([part(first); 2], |[least, greatest], aim| {
+                [least.min(part(aim)), greatest.max(part(aim))]
+            })
+        };
+        let [least, greatest] = over(|aim| aim.origin);
+        let rises = rises(first);
+        let pick = |up: Vec3, down: Vec3| Vec3::from_array([0, 1, 2].map(|i| if rises[i] { up[i] } else { down[i] }));
+        Some(Self {
+            first_origin: pick(greatest, least),
+            last_origin: pick(least, greatest),
+            first_rate: over(|aim| aim.first_rate),
+            last_rate: over(|aim| aim.last_rate),
+            near: aims.iter().fold(f32::INFINITY, |least, aim| least.min(aim.near)),
+            far: aims.iter().fold(0.0, |greatest, aim| aim.far.max(greatest)),
+            rises,
+        })
+    }
+
+    /// As [`super::Beam::rows`].
+    pub(crate) fn rows(&self) -> [usize; 3] {
+        rows(self.rises)
+    }
+
+    /// The same in lanes.
+    ///
+    /// # Safety
+    /// The processor has the lanes' vector unit.
+    #[inline(always)]
+    pub(crate) unsafe fn spread<L: Lanes>(&self) -> Spread<L> {
+        // SAFETY: the processor is the caller's.
+        unsafe {
+            Spread {
+                first_origin: spread(self.first_origin.to_array()),
+                last_origin: spread(self.last_origin.to_array()),
+                first_rate: [spread(self.first_rate[0].to_array()), spread(self.first_rate[1].to_array())],
+                last_rate: [spread(self.last_rate[0].to_array()), spread(self.last_rate[1].to_array())],
+                near: L::splat(self.near),
+            }
+        }
+    }
+}
+
+/// A span in lanes.
+#[derive(Clone, Copy)]
+pub(crate) struct Spread<L> {
+    first_origin: [L; 3],
+    last_origin: [L; 3],
+    first_rate: [[L; 3]; 2],
+    last_rate: [[L; 3]; 2],
+    near: L,
+}
+
+impl<L: Lanes> Spread<L> {
+    /// From where to where some ray may be between planes: no later and no earlier than [`super::slab`] tells of each.
+    ///
+    /// # Safety
+    /// The processor has the lanes' vector unit.
+    #[inline(always)]
+    pub(crate) unsafe fn slab(&self, far: L, first: [L; 3], last: [L; 3]) -> [L; 2] {
+        // SAFETY: the processor is the caller's.
+        unsafe {
+            let enters = self.enters(first, 0).max(self.enters(first, 1).max(self.enters(first, 2).max(self.near)));
+            let leaves = self.leaves(last, 0).min(self.leaves(last, 1).min(self.leaves(last, 2).min(far)));
+            [enters, leaves]
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn enters(&self, planes: [L; 3], axis: usize) -> L {
+        // SAFETY: the processor is the caller's.
+        unsafe {
+            let from = planes[axis].sub(self.first_origin[axis]);
+            from.mul(self.first_rate[0][axis]).min(from.mul(self.first_rate[1][axis]))
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn leaves(&self, planes: [L; 3], axis: usize) -> L {
+        // SAFETY: the processor is the caller's.
+        unsafe {
+            let from = planes[axis].sub(self.last_origin[axis]);
+            from.mul(self.last_rate[0][axis]).max(from.mul(self.last_rate[1][axis]))
+        }
+    }
+}

@@ -74,6 +74,9 @@ impl Obb {
     /// least surface, turned about the thinnest side as far as that helps. Its axes are at right angles but for
     /// rounding. Empty if there are none.
     pub fn tight(points: &[Vec3]) -> Self {
+        // Triangles side by side share corners, and everything below is asked of each.
+        let mut different = [Vec3::ZERO; extremes::LEAF];
+        let points = if points.len() <= extremes::LEAF { once_each(points, &mut different) } else { points };
         // Many points are sampled: their covariance is but one offer.
         let sample = points.iter().step_by(points.len() / SAMPLE + 1).copied();
         extremes::axes(points, || principal_axes(sample))
@@ -113,6 +116,19 @@ impl Obb {
         let half = self.half.max(Vec3::ZERO);
         8.0 * (half.x * half.y + half.y * half.z + half.z * half.x)
     }
+}
+
+/// The points, each once, in their order; `room` is for as many as there are.
+fn once_each<'a>(points: &[Vec3], room: &'a mut [Vec3]) -> &'a [Vec3] {
+    let mut len = 0;
+    for point in points {
+        // What is not a number is no other's equal and stays.
+        if !room[..len].contains(point) {
+            room[len] = *point;
+            len += 1;
+        }
+    }
+    &room[..len]
 }
 
 /// Axes like these at right angles, as near as f32 can write them; `None` if they are too far from it. What was made

@@ -252,7 +252,9 @@ impl<V: Overlap> VolumeTree<V> {
     /// Puts a volume around the items of every box.
     fn fit(&mut self) {
         let points = self.local_points();
-        let (bounds, most) = (self.bounds(&points), self.most_points(points.len()));
+        let most = self.most_points(points.len());
+        // The root has all points: what is fitted to them all asks for no boxes.
+        let bounds = if most < points.len() { self.bounds(&points) } else { Vec::new() };
         let around = |i: usize| {
             let own = self.points_of(self.items[i]);
             if own.len() <= most { V::around(&points[own]) } else { V::around(&bounds[i].corners()) }

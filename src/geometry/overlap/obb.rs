@@ -102,8 +102,9 @@ impl Kernel<5, 3> for Obb {
                 for j in 0..3 {
                     let [j1, j2] = OTHERS[j];
                     let way = along[i2].mul(turn[i1][j]).sub(along[i1].mul(turn[i2][j]));
-                    let own =
-                        abs[i2][j].mul(L::splat(moved.half[i1])).add(abs[i1][j].mul(L::splat(moved.half[i2])));
+                    let own = abs[i2][j]
+                        .mul(L::splat(moved.half[i1]))
+                        .add(abs[i1][j].mul(L::splat(moved.half[i2])));
                     let other = half[j1].mul(abs[i][j2]).add(half[j2].mul(abs[i][j1]));
                     apart |= way.abs().greater(own.add(other).add(slack));
                 }

@@ -2,6 +2,7 @@
 
 use super::{Scene, SceneError, names};
 
+mod cloth;
 mod dragons;
 mod factory;
 mod geodesic;
@@ -75,6 +76,7 @@ pub const GENERATORS: &[Generator] = &[
     shell::OUTER,
     shell::FIVE_PERCENT,
     shell::ONE_PERCENT,
+    cloth::CLOTH,
 ];
 
 /// Makes a scene by its name.

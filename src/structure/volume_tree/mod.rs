@@ -78,7 +78,7 @@ enum Items {
     Triangles { corners: Vec<[u32; 3]>, places: Vec<[Vec3; 3]> },
     /// Nodes of a scene that have a mesh, all of their points one after the other; where each node's begin, and the last
     /// ends.
-    Nodes { points: Vec<Vec3>, starts: Vec<u32> },
+    Nodes { points: Vec<Vec3>, starts: Vec<usize> },
 }
 
 /// A tree of volumes around triangles or around scene nodes: the items.
@@ -115,6 +115,9 @@ pub enum VolumeTreeError {
     /// More than can be numbered.
     #[error("{0} items, expected at most {most}", most = u32::MAX >> 5)]
     TooMany(usize),
+    /// More corners than can be numbered.
+    #[error("{0} corners, expected at most {most}", most = u32::MAX)]
+    TooManyCorners(usize),
     /// Leaves of none, or of more than there can be.
     #[error("leaves of {0} triangles, expected 1 to 64")]
     Leaf(usize),
@@ -211,7 +214,7 @@ impl<V: Overlap> VolumeTree<V> {
     fn points_of(&self, (first, end): (u32, u32)) -> Range<usize> {
         let at = |item: u32| match &self.content {
             Items::Triangles { .. } => 3 * item as usize,
-            Items::Nodes { starts, .. } => starts[item as usize] as usize,
+            Items::Nodes { starts, .. } => starts[item as usize],
         };
         at(first)..at(end)
     }
@@ -313,6 +316,7 @@ impl<V: Overlap> VolumeTree<V> {
         let mut seen = vec![0_u32; self.order.len()];
         let mut stack: Vec<usize> = if self.is_empty() { Vec::new() } else { vec![0] };
         let all = self.local_points();
+        let (bounds, most) = (self.bounds(&all), self.most_points(all.len()));
         let here = Way::new(&Rigid::IDENTITY, 0.0);
         while let Some(i) = stack.pop() {
             let (link, (first, end)) = (self.links[i], self.items[i]);
@@ -341,7 +345,10 @@ impl<V: Overlap> VolumeTree<V> {
                     return Err(TreeError::new(i, format!("items up to {end}, the boxes below end at {at}")));
                 }
             }
-            let points = &all[self.points_of((first, end))];
+            // Of more points than it was fitted to each of, the box around them: all volumes are convex.
+            let corners = bounds[i].corners();
+            let own = self.points_of((first, end));
+            let points = if own.len() <= most { &all[own] } else { &corners[..] };
             let around = self.volumes[i].moved(&here);
             if points.iter().any(|point| V::around(&[*point]).apart(&around)) {
                 return Err(TreeError::new(i, "a point of its own lies outside"));

@@ -55,7 +55,7 @@ impl<V: Overlap> VolumeTree<V> {
     /// # Errors
     /// As [`VolumeTree::over_triangles`].
     pub fn over_scene(scene: &Scene, leaf: usize) -> Result<Self, VolumeTreeError> {
-        let (positions, triangles) = in_world(scene);
+        let (positions, triangles) = in_world(scene)?;
         Self::over_triangles(&positions, &triangles, leaf)
     }
 
@@ -82,16 +82,27 @@ impl<V: Overlap> VolumeTree<V> {
     }
 }
 
-/// The triangles of a scene in the world: corners, and three of them a triangle.
-pub fn in_world(scene: &Scene) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
-    for (node, world) in scene.nodes.iter().zip(scene.world_transforms()) {
-        let Some(mesh) = node.mesh.map(|mesh| &scene.meshes[mesh as usize]) else { continue };
+/// The triangles of a scene in the world: corners, in metres, and three of them a triangle.
+///
+/// # Errors
+/// [`VolumeTreeError::TooManyCorners`], before any of them is placed.
+pub fn in_world(scene: &Scene) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), VolumeTreeError> {
+    let placed = || {
+        let meshes = scene.nodes.iter().map(|node| node.mesh.map(|mesh| &scene.meshes[mesh as usize]));
+        meshes.enumerate().filter_map(|(node, mesh)| Some((node, mesh?)))
+    };
+    let count = placed().map(|(_, mesh)| mesh.positions.len()).fold(0, usize::saturating_add);
+    if u32::try_from(count).is_err() {
+        return Err(VolumeTreeError::TooManyCorners(count));
+    }
+    let (mut positions, mut triangles) = (Vec::with_capacity(count), Vec::new());
+    let world = scene.world_transforms();
+    for (node, mesh) in placed() {
         let first = positions.len() as u32;
-        positions.extend(mesh.positions.iter().map(|position| world.transform_point3(*position)));
+        positions.extend(mesh.positions.iter().map(|position| world[node].transform_point3(*position)));
         triangles.extend(mesh.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
     }
-    (positions, triangles)
+    Ok((positions, triangles))
 }
 
 /// The corners of each triangle.

@@ -267,7 +267,8 @@ impl<V: Overlap> VolumeTree<V> {
         }
         let root = around(0);
         let boxes = self.links.iter().enumerate();
-        self.volumes = boxes.map(|(i, link)| if link.is_used() { around(i) } else { root }).collect();
+        self.volumes =
+            boxes.map(|(i, link)| if i > 0 && link.is_used() { around(i) } else { root }).collect();
         self.blocks = vec![V::Eight::UNUSED; self.links.len() / BLOCK];
         for (i, (volume, link)) in self.volumes.iter().zip(&mut self.links).enumerate() {
             if link.is_used() {

@@ -107,18 +107,19 @@ pub fn in_world(scene: &Scene) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), VolumeTreeE
 
 /// The corners of each triangle.
 fn places(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<[Vec3; 3]>, VolumeTreeError> {
-    let corners = positions.len();
-    let place = |(triangle, numbers): (usize, &[u32; 3])| {
+    // Not collected from results, which would not know how many there are to be.
+    let mut all = Vec::with_capacity(triangles.len());
+    for (triangle, numbers) in triangles.iter().enumerate() {
         let mut places = [Vec3::ZERO; 3];
         for (place, &corner) in places.iter_mut().zip(numbers) {
-            *place = *positions.get(corner as usize).ok_or(VolumeTreeError::NoCorner {
-                triangle,
-                corner,
-                corners,
-            })?;
+            let corners = positions.len();
+            let missing = VolumeTreeError::NoCorner { triangle, corner, corners };
+            *place = *positions.get(corner as usize).ok_or(missing)?;
         }
-        let fine = places.iter().all(|place| place.abs().cmplt(Vec3::splat(FARTHEST)).all());
-        if fine { Ok(places) } else { Err(VolumeTreeError::Odd(triangle)) }
-    };
-    triangles.iter().enumerate().map(place).collect()
+        if !places.iter().all(|place| place.abs().cmplt(Vec3::splat(FARTHEST)).all()) {
+            return Err(VolumeTreeError::Odd(triangle));
+        }
+        all.push(places);
+    }
+    Ok(all)
 }

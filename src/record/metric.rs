@@ -250,6 +250,22 @@ pub const METRICS: &[Metric] = {
         declare("collapse_time", "ns", Lower, "Median time of making the wide hierarchy of the binary one."),
         declare("structure_bytes", "B", Lower, "Memory of the hierarchies that rays go through."),
         declare(
+            "mover_x",
+            "m",
+            Lower,
+            "Where the moving body was put, along x: where its origin is in the other's space. Told once a cell, of the first frame and of each in which it changed, as are the next five.",
+        ),
+        declare("mover_y", "m", Lower, "The same along y."),
+        declare("mover_z", "m", Lower, "The same along z."),
+        declare(
+            "mover_turn_x",
+            "rad",
+            Lower,
+            "How the moving body was turned about its origin: the angle times what the axis has along x.",
+        ),
+        declare("mover_turn_y", "rad", Lower, "The same along y."),
+        declare("mover_turn_z", "rad", Lower, "The same along z."),
+        declare(
             "lost_time",
             "%",
             Lower,

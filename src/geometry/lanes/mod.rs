@@ -45,34 +45,39 @@ impl Unit {
 }
 
 /// Declares a function that runs a kernel on the unit it is told: a generic function over [`Lanes`], unsafe because
-/// its caller answers for the unit.
+/// its caller answers for the unit. Its generics beside the lanes, if it has such, stand in brackets: those the function
+/// has, and those the kernel is given.
 macro_rules! on_unit {
-    ($(#[$doc:meta])* fn $name:ident($($argument:ident: $type:ty),*) -> $result:ty = $kernel:ident) => {
+    (
+        $(#[$doc:meta])*
+        fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $type:ty),*) -> $result:ty
+            = $kernel:ident $([$($given:ident),*])?
+    ) => {
         $(#[$doc])*
         #[inline]
-        fn $name(unit: $crate::geometry::lanes::Unit, $($argument: $type),*) -> $result {
+        fn $name<$($($generics)*)?>(unit: $crate::geometry::lanes::Unit, $($argument: $type),*) -> $result {
             #[cfg(target_arch = "x86_64")]
             #[target_feature(enable = "avx2")]
-            fn avx2($($argument: $type),*) -> $result {
+            fn avx2<$($($generics)*)?>($($argument: $type),*) -> $result {
                 // SAFETY: this function has the feature.
-                unsafe { $kernel::<$crate::geometry::lanes::x86::Lanes8>($($argument),*) }
+                unsafe { $kernel::<$crate::geometry::lanes::x86::Lanes8, $($($given),*)?>($($argument),*) }
             }
             match unit.0 {
                 // SAFETY: a `Unit` is only made where it is there.
                 #[cfg(target_arch = "x86_64")]
-                $crate::geometry::lanes::Kind::Avx2 => unsafe { avx2($($argument),*) },
+                $crate::geometry::lanes::Kind::Avx2 => unsafe { avx2::<$($($given),*)?>($($argument),*) },
                 // SAFETY: every x86-64 processor has the unit.
                 #[cfg(target_arch = "x86_64")]
                 $crate::geometry::lanes::Kind::Sse2 => unsafe {
-                    $kernel::<$crate::geometry::lanes::x86::Lanes4>($($argument),*)
+                    $kernel::<$crate::geometry::lanes::x86::Lanes4, $($($given),*)?>($($argument),*)
                 },
                 // SAFETY: every 64-bit ARM processor with an operating system has the unit.
                 #[cfg(target_arch = "aarch64")]
                 $crate::geometry::lanes::Kind::Neon => unsafe {
-                    $kernel::<$crate::geometry::lanes::arm::Lanes4>($($argument),*)
+                    $kernel::<$crate::geometry::lanes::arm::Lanes4, $($($given),*)?>($($argument),*)
                 },
                 // SAFETY: one lane needs no unit.
-                $crate::geometry::lanes::Kind::Scalar => unsafe { $kernel::<f32>($($argument),*) },
+                $crate::geometry::lanes::Kind::Scalar => unsafe { $kernel::<f32, $($($given),*)?>($($argument),*) },
             }
         }
     };

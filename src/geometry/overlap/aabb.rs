@@ -1,9 +1,9 @@
 //! Axis-aligned boxes: six comparisons (Paper II sec. 5, P2-17). A box that was turned on the way is taken for the
 //! aligned box around it, which is up to 1.7 times as wide.
 
-use super::{Columns, Eight, Overlap, ROUNDING, Way, load};
+use super::{Columns, Kernel, Overlap, ROUNDING, Way};
 use crate::geometry::Aabb;
-use crate::geometry::lanes::{Lanes, Unit, on_unit};
+use crate::geometry::lanes::Lanes;
 use glam::Vec3;
 
 /// The box around one that was moved to where others are.
@@ -14,23 +14,15 @@ pub struct MovedAabb {
     half: [f32; 3],
 }
 
-/// The numbers of a box: its centre and its half extents.
-const NUMBERS: usize = 6;
-
 /// Half extents from the centre as it was rounded, and rounded up.
 fn half(bounds: &Aabb) -> Vec3 {
     let centre = bounds.centre();
     (bounds.max - centre).max(centre - bounds.min) * (1.0 + ROUNDING)
 }
 
-fn numbers(bounds: &Aabb) -> [f32; NUMBERS] {
-    let parts = [bounds.centre(), half(bounds)];
-    std::array::from_fn(|i| parts[i / 3][i % 3])
-}
-
 impl Overlap for Aabb {
     type Moved = MovedAabb;
-    type Eight = Columns<NUMBERS>;
+    type Eight = Columns<2, 3>;
 
     fn around(points: &[Vec3]) -> Self {
         // The least of a number and a NaN is the number: the box would leave out what nobody knows the place of.
@@ -52,59 +44,26 @@ impl Overlap for Aabb {
         let turned = if way.straight { half.into() } else { way.rotation.abs() * glam::Vec3A::from(half) };
         MovedAabb { centre: way.point(centre).to_array(), half: (turned + slack).to_array() }
     }
-
-    #[inline]
-    fn apart(&self, moved: &MovedAabb) -> bool {
-        let numbers = numbers(self);
-        // SAFETY: one lane needs no vector unit.
-        unsafe { separated::<f32>(moved, &numbers) != 0 }
-    }
 }
 
-impl Eight<Aabb> for Columns<NUMBERS> {
-    const UNUSED: Self = Self::UNUSED;
-
-    fn set(&mut self, lane: usize, volume: &Aabb) {
-        self.set(lane, numbers(volume));
+/// Its centre and its half extents; an axis separates.
+impl Kernel<2, 3> for Aabb {
+    fn numbers(&self) -> [[f32; 3]; 2] {
+        [self.centre().to_array(), half(self).to_array()]
     }
 
-    #[inline]
-    fn apart(&self, unit: Unit, moved: &MovedAabb) -> u8 {
-        eight(unit, moved, &self.0)
-    }
-}
-
-on_unit! {
-    fn eight(moved: &MovedAabb, columns: &[[f32; 8]; NUMBERS]) -> u8 = eight_by
-}
-
-/// # Safety
-/// The processor has the lanes' vector unit.
-#[inline(always)]
-unsafe fn eight_by<L: Lanes>(moved: &MovedAabb, columns: &[[f32; 8]; NUMBERS]) -> u8 {
-    let mut apart = 0;
-    for from in (0..8).step_by(L::LEN) {
-        // SAFETY: `from` steps by the lanes' number below 8; the processor is the caller's.
-        apart |= unsafe { separated::<L>(moved, &load(columns, from)) << from };
-    }
-    apart as u8
-}
-
-/// Which boxes an axis separates from the moved one.
-///
-/// # Safety
-/// The processor has the lanes' vector unit.
-#[inline(always)]
-unsafe fn separated<L: Lanes>(moved: &MovedAabb, numbers: &[L; NUMBERS]) -> u64 {
-    let mut apart = 0;
-    for axis in 0..3 {
-        // SAFETY: the processor is the caller's.
-        unsafe {
-            let between = numbers[axis].sub(L::splat(moved.centre[axis])).abs();
-            let half = numbers[3 + axis];
-            let slack = between.add(half).mul(L::splat(ROUNDING));
-            apart |= between.greater(half.add(L::splat(moved.half[axis])).add(slack));
+    #[inline(always)]
+    unsafe fn separated<L: Lanes>(moved: &MovedAabb, [centre, half]: &[[L; 3]; 2]) -> u64 {
+        let mut apart = 0;
+        for axis in 0..3 {
+            // SAFETY: the processor is the caller's.
+            unsafe {
+                let between = centre[axis].sub(L::splat(moved.centre[axis])).abs();
+                let half = half[axis];
+                let slack = between.add(half).mul(L::splat(ROUNDING));
+                apart |= between.greater(half.add(L::splat(moved.half[axis])).add(slack));
+            }
         }
+        apart
     }
-    apart
 }

@@ -1,7 +1,7 @@
 //! Axis-aligned boxes taken for oriented ones: the boxes of the one, the test of the other (P2-17).
 
-use super::{Columns, Eight, Overlap, Way, obb};
-use crate::geometry::lanes::Unit;
+use super::{Columns, Kernel, Overlap, Way, obb};
+use crate::geometry::lanes::Lanes;
 use crate::geometry::{Aabb, Obb};
 use glam::Vec3;
 
@@ -11,7 +11,7 @@ pub struct AlignedObb(Obb);
 
 impl Overlap for AlignedObb {
     type Moved = obb::MovedObb;
-    type Eight = Columns<{ obb::NUMBERS }>;
+    type Eight = Columns<5, 3>;
 
     fn around(points: &[Vec3]) -> Self {
         Self(Obb::from(Aabb::around(points)))
@@ -25,22 +25,16 @@ impl Overlap for AlignedObb {
     fn moved(&self, way: &Way) -> obb::MovedObb {
         self.0.moved(way)
     }
-
-    #[inline]
-    fn apart(&self, moved: &obb::MovedObb) -> bool {
-        self.0.apart(moved)
-    }
 }
 
-impl Eight<AlignedObb> for Columns<{ obb::NUMBERS }> {
-    const UNUSED: Self = Self::UNUSED;
-
-    fn set(&mut self, lane: usize, volume: &AlignedObb) {
-        Eight::<Obb>::set(self, lane, &volume.0);
+impl Kernel<5, 3> for AlignedObb {
+    fn numbers(&self) -> [[f32; 3]; 5] {
+        self.0.numbers()
     }
 
-    #[inline]
-    fn apart(&self, unit: Unit, moved: &obb::MovedObb) -> u8 {
-        Eight::<Obb>::apart(self, unit, moved)
+    #[inline(always)]
+    unsafe fn separated<L: Lanes>(moved: &obb::MovedObb, numbers: &[[L; 3]; 5]) -> u64 {
+        // SAFETY: the processor is the caller's.
+        unsafe { Obb::separated(moved, numbers) }
     }
 }

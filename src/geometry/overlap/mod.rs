@@ -11,13 +11,16 @@
 
 mod aabb;
 mod aligned;
+mod eight;
 mod kdop;
 mod obb;
 mod sphere;
 
 use super::Rigid;
-use super::lanes::{Lanes, Unit};
+use super::lanes::Unit;
 pub use aligned::AlignedObb;
+pub use eight::Columns;
+use eight::Kernel;
 use glam::{Mat3A, Vec3, Vec3A};
 
 /// Volumes that are tested against one another.
@@ -38,7 +41,10 @@ pub trait Overlap: Copy + std::fmt::Debug + Send + Sync + 'static {
     fn moved(&self, way: &Way) -> Self::Moved;
 
     /// Whether this one and one that was moved here are certainly further apart than the way's reach.
-    fn apart(&self, moved: &Self::Moved) -> bool;
+    #[inline]
+    fn apart(&self, moved: &Self::Moved) -> bool {
+        Self::Eight::one_apart(self, moved)
+    }
 }
 
 /// Eight volumes as a structure of arrays.
@@ -51,6 +57,9 @@ pub trait Eight<V: Overlap>: Copy + std::fmt::Debug + Send + Sync + 'static {
 
     /// Bit `i` is set when volume `i` and the moved one are certainly apart.
     fn apart(&self, unit: Unit, moved: &V::Moved) -> u8;
+
+    /// Whether one volume by itself and the moved one are: what its bit would be.
+    fn one_apart(volume: &V, moved: &V::Moved) -> bool;
 }
 
 /// The way from one body's space to another's, with all that is to be added to a comparison for it.
@@ -104,37 +113,6 @@ impl Way {
     #[inline]
     fn slack(&self, centre: Vec3, extent: f32) -> f32 {
         (centre.abs().element_sum() + extent) * self.share + self.reach
-    }
-}
-
-/// Eight columns of `N` numbers.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
-pub struct Columns<const N: usize>([[f32; 8]; N]);
-
-impl<const N: usize> Columns<N> {
-    const UNUSED: Self = Self([[f32::NAN; 8]; N]);
-
-    fn set(&mut self, lane: usize, numbers: [f32; N]) {
-        for (column, number) in self.0.iter_mut().zip(numbers) {
-            column[lane] = number;
-        }
-    }
-}
-
-/// The numbers of the volumes from lane `from` on.
-///
-/// # Safety
-/// The processor has the lanes' vector unit, and there are as many lanes from there to 8.
-#[inline(always)]
-unsafe fn load<L: Lanes, const N: usize>(columns: &[[f32; 8]; N], from: usize) -> [L; N] {
-    // SAFETY: what the caller says.
-    unsafe {
-        let mut numbers = [L::splat(0.0); N];
-        for (number, column) in numbers.iter_mut().zip(columns) {
-            *number = L::load(column, from);
-        }
-        numbers
     }
 }
 

@@ -39,13 +39,18 @@ impl Obb {
         }
         // A point's coordinates are those of the axes as they were rounded, so the box holds it exactly.
         let coordinates = exact.inverse();
-        let (mut low, mut high, mut odd) = (DVec3::INFINITY, DVec3::NEG_INFINITY, false);
+        // By comparisons, which are one instruction where `min` is several: what is no number is seen by the sum.
+        let (mut low, mut high, mut sum) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], DVec3::ZERO);
         for point in points {
             let at = coordinates * point;
-            odd |= !at.is_finite();
-            (low, high) = (low.min(at), high.max(at));
+            sum += at;
+            for (i, at) in at.to_array().into_iter().enumerate() {
+                low[i] = if at < low[i] { at } else { low[i] };
+                high[i] = if at > high[i] { at } else { high[i] };
+            }
         }
-        if odd {
+        let (low, high) = (DVec3::from_array(low), DVec3::from_array(high));
+        if !sum.is_finite() {
             return Some(Self { centre: Vec3::NAN, axes, half: Vec3::ZERO });
         }
         if low.x > high.x {
@@ -74,6 +79,9 @@ impl Obb {
     /// least surface, turned about the thinnest side as far as that helps. Its axes are at right angles but for
     /// rounding. Empty if there are none.
     pub fn tight(points: &[Vec3]) -> Self {
+        // Triangles side by side share corners, and everything below is asked of each.
+        let mut different = [Vec3::ZERO; extremes::LEAF];
+        let points = if points.len() <= extremes::LEAF { once_each(points, &mut different) } else { points };
         // Many points are sampled: their covariance is but one offer.
         let sample = points.iter().step_by(points.len() / SAMPLE + 1).copied();
         extremes::axes(points, || principal_axes(sample))
@@ -113,6 +121,19 @@ impl Obb {
         let half = self.half.max(Vec3::ZERO);
         8.0 * (half.x * half.y + half.y * half.z + half.z * half.x)
     }
+}
+
+/// The points, each once, in their order; `room` is for as many as there are.
+fn once_each<'a>(points: &[Vec3], room: &'a mut [Vec3]) -> &'a [Vec3] {
+    let mut len = 0;
+    for point in points {
+        // What is not a number is no other's equal and stays.
+        if !room[..len].contains(point) {
+            room[len] = *point;
+            len += 1;
+        }
+    }
+    &room[..len]
 }
 
 /// Axes like these at right angles, as near as f32 can write them; `None` if they are too far from it. What was made

@@ -69,6 +69,16 @@ impl Contacts {
         all.pairs.sort_unstable();
         all
     }
+
+    /// The same of a body's own contacts, the lower number of each pair first.
+    pub fn gather_own<'a>(parts: impl IntoIterator<Item = &'a Found>) -> Self {
+        let mut all = Self::gather(parts);
+        for (a, b) in &mut all.pairs {
+            (*a, *b) = ((*a).min(*b), (*a).max(*b));
+        }
+        all.pairs.sort_unstable();
+        all
+    }
 }
 
 /// The contacts of two bodies, the second moved, on this thread.
@@ -78,22 +88,17 @@ impl Contacts {
 /// bodies' triangles multiplied: ask [`Rigid::is_finite`] first if a motion may be such.
 pub fn contacts<V: Overlap>(a: &VolumeTree<V>, b: &VolumeTree<V>, motion: &Rigid, query: Query) -> Contacts {
     let pair = Pair::new(a, b, motion, query.reach, Unit::best());
-    on_this_thread(&pair, query)
+    Contacts::gather([&on_this_thread(&pair, query)])
 }
 
 /// The pairs of a body's own triangles that touch, the lower number first. Triangles that share a corner, by its
 /// number, are neighbours and not asked about.
 pub fn own_contacts<V: Overlap>(body: &VolumeTree<V>, query: Query) -> Contacts {
     let pair = Pair::of_one(body, query.reach, Unit::best());
-    let mut all = on_this_thread(&pair, query);
-    for (a, b) in &mut all.pairs {
-        (*a, *b) = ((*a).min(*b), (*a).max(*b));
-    }
-    all.pairs.sort_unstable();
-    all
+    Contacts::gather_own([&on_this_thread(&pair, query)])
 }
 
-fn on_this_thread<V: Overlap>(pair: &Pair<'_, V>, query: Query) -> Contacts {
+fn on_this_thread<V: Overlap>(pair: &Pair<'_, V>, query: Query) -> Found {
     type Native = <Threads as Machine>::Word;
     let stop = Native::new(0);
     let work = BatchWork::<Native, V>::new(pair, query.first.then_some(&stop));
@@ -102,7 +107,7 @@ fn on_this_thread<V: Overlap>(pair: &Pair<'_, V>, query: Query) -> Contacts {
         let cpu = crate::machine::threads::Thread::outside(0, 1);
         work.descend(root, &mut found, &cpu, &mut stack);
     }
-    Contacts::gather([&found])
+    found
 }
 
 /// Whether any processor has found a contact, where one is enough.

@@ -2,6 +2,7 @@
 
 use super::{Scene, SceneError, names};
 
+mod cloth;
 mod corner;
 mod cylinders;
 mod dragons;
@@ -80,6 +81,7 @@ pub const GENERATORS: &[Generator] = &[
     shell::OUTER,
     shell::FIVE_PERCENT,
     shell::ONE_PERCENT,
+    cloth::CLOTH,
     room::ROOM,
     corner::CORNER,
     spheres::THOUSANDS,

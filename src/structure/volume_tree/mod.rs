@@ -78,7 +78,7 @@ enum Items {
     Triangles { corners: Vec<[u32; 3]>, places: Vec<[Vec3; 3]> },
     /// Nodes of a scene that have a mesh, all of their points one after the other; where each node's begin, and the last
     /// ends.
-    Nodes { points: Vec<Vec3>, starts: Vec<u32> },
+    Nodes { points: Vec<Vec3>, starts: Vec<usize> },
 }
 
 /// A tree of volumes around triangles or around scene nodes: the items.
@@ -115,6 +115,9 @@ pub enum VolumeTreeError {
     /// More than can be numbered.
     #[error("{0} items, expected at most {most}", most = u32::MAX >> 5)]
     TooMany(usize),
+    /// More corners than can be numbered.
+    #[error("{0} corners, expected at most {most}", most = u32::MAX)]
+    TooManyCorners(usize),
     /// Leaves of none, or of more than there can be.
     #[error("leaves of {0} triangles, expected 1 to 64")]
     Leaf(usize),
@@ -211,7 +214,7 @@ impl<V: Overlap> VolumeTree<V> {
     fn points_of(&self, (first, end): (u32, u32)) -> Range<usize> {
         let at = |item: u32| match &self.content {
             Items::Triangles { .. } => 3 * item as usize,
-            Items::Nodes { starts, .. } => starts[item as usize] as usize,
+            Items::Nodes { starts, .. } => starts[item as usize],
         };
         at(first)..at(end)
     }
@@ -252,7 +255,9 @@ impl<V: Overlap> VolumeTree<V> {
     /// Puts a volume around the items of every box.
     fn fit(&mut self) {
         let points = self.local_points();
-        let (bounds, most) = (self.bounds(&points), self.most_points(points.len()));
+        let most = self.most_points(points.len());
+        // The root has all points: what is fitted to them all asks for no boxes.
+        let bounds = if most < points.len() { self.bounds(&points) } else { Vec::new() };
         let around = |i: usize| {
             let own = self.points_of(self.items[i]);
             if own.len() <= most { V::around(&points[own]) } else { V::around(&bounds[i].corners()) }
@@ -262,7 +267,8 @@ impl<V: Overlap> VolumeTree<V> {
         }
         let root = around(0);
         let boxes = self.links.iter().enumerate();
-        self.volumes = boxes.map(|(i, link)| if link.is_used() { around(i) } else { root }).collect();
+        self.volumes =
+            boxes.map(|(i, link)| if i > 0 && link.is_used() { around(i) } else { root }).collect();
         self.blocks = vec![V::Eight::UNUSED; self.links.len() / BLOCK];
         for (i, (volume, link)) in self.volumes.iter().zip(&mut self.links).enumerate() {
             if link.is_used() {
@@ -311,6 +317,7 @@ impl<V: Overlap> VolumeTree<V> {
         let mut seen = vec![0_u32; self.order.len()];
         let mut stack: Vec<usize> = if self.is_empty() { Vec::new() } else { vec![0] };
         let all = self.local_points();
+        let (bounds, most) = (self.bounds(&all), self.most_points(all.len()));
         let here = Way::new(&Rigid::IDENTITY, 0.0);
         while let Some(i) = stack.pop() {
             let (link, (first, end)) = (self.links[i], self.items[i]);
@@ -339,7 +346,10 @@ impl<V: Overlap> VolumeTree<V> {
                     return Err(TreeError::new(i, format!("items up to {end}, the boxes below end at {at}")));
                 }
             }
-            let points = &all[self.points_of((first, end))];
+            // Of more points than it was fitted to each of, the box around them: all volumes are convex.
+            let corners = bounds[i].corners();
+            let own = self.points_of((first, end));
+            let points = if own.len() <= most { &all[own] } else { &corners[..] };
             let around = self.volumes[i].moved(&here);
             if points.iter().any(|point| V::around(&[*point]).apart(&around)) {
                 return Err(TreeError::new(i, "a point of its own lies outside"));

@@ -25,7 +25,7 @@ impl<V: Overlap> VolumeTree<V> {
             }
             let place = |position: &Vec3| world[node as usize].transform_point3(*position);
             points.extend(mesh.positions.iter().map(place));
-            starts.push(points.len() as u32);
+            starts.push(points.len());
             order.push(node);
         }
         for &node in depth_first.iter().rev() {

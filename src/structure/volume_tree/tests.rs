@@ -1,6 +1,7 @@
 use super::*;
 use crate::geometry::{KDop, Obb, Sphere};
-use crate::scene::{self, Scene};
+use crate::scene::{self, Mesh, Scene};
+use glam::Affine3A;
 
 /// A bent sheet of triangles.
 fn sheet(across: u32, at: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
@@ -98,4 +99,35 @@ fn over_nodes_it_has_the_shape_of_the_scene() {
         assert_eq!(tree.refit(&[]), Err(VolumeTreeError::Nodes));
     }
     assert!(VolumeTree::<Aabb>::over_nodes(&Scene::new("nothing")).is_empty());
+}
+
+/// A chain of nodes, each with a mesh and the next below it: every point lies in every box above.
+#[test]
+fn a_chain_is_fitted_and_checked_in_little_more_time_than_it_has_points() {
+    let mut scene = Scene::new("chain");
+    let corners: Vec<Vec3> = (0..30).map(|i| Vec3::new(i as f32, (i * i) as f32, 1.0)).collect();
+    let mesh = scene.add_mesh(Mesh::new("link", corners, vec![[0, 1, 2]]));
+    let mut above = None;
+    for _ in 0..3000 {
+        let place = Affine3A::from_translation(Vec3::new(0.5, 0.25, 0.125));
+        above = Some(scene.add_node(above, "link", place, Some(mesh)));
+    }
+    let mut tree = VolumeTree::<Obb>::over_nodes(&scene);
+    assert!(tree.statistics().depth >= 3000);
+    tree.validate().unwrap();
+    // The root is checked by the box around all: one that leaves some of it out is found.
+    tree.volumes[0] = tree.volumes[tree.volumes.len() - 8];
+    assert_eq!(tree.validate().unwrap_err().node, 0);
+}
+
+/// Four times a thousand million corners, of one mesh in many places.
+#[test]
+fn corners_that_cannot_be_numbered_are_told() {
+    let mut scene = Scene::new("many");
+    let mesh = scene.add_mesh(Mesh::new("points", vec![Vec3::ZERO; 1 << 20], vec![[0, 1, 2]]));
+    for _ in 0..1 << 12 {
+        scene.add_node(None, "copy", Affine3A::IDENTITY, Some(mesh));
+    }
+    assert_eq!(in_world(&scene).unwrap_err(), VolumeTreeError::TooManyCorners(1 << 32));
+    assert!(VolumeTree::<Aabb>::over_scene(&scene, 2).is_err());
 }

@@ -82,6 +82,10 @@ pub(super) fn build(items: &mut [Item], leaf: usize) -> Topology {
     if items.is_empty() {
         return topology;
     }
+    // Of triangles that lie evenly there are about as many boxes, unused ones included.
+    let boxes = 3 * items.len() / leaf;
+    topology.links.reserve(boxes);
+    topology.items.reserve(boxes);
     topology.grow(1);
     let mut stack = vec![(0, Part::of(items, 0))];
     let mut parts = Vec::with_capacity(BLOCK);

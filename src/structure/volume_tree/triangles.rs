@@ -55,7 +55,7 @@ impl<V: Overlap> VolumeTree<V> {
     /// # Errors
     /// As [`VolumeTree::over_triangles`].
     pub fn over_scene(scene: &Scene, leaf: usize) -> Result<Self, VolumeTreeError> {
-        let (positions, triangles) = in_world(scene);
+        let (positions, triangles) = in_world(scene)?;
         Self::over_triangles(&positions, &triangles, leaf)
     }
 
@@ -82,32 +82,44 @@ impl<V: Overlap> VolumeTree<V> {
     }
 }
 
-/// The triangles of a scene in the world: corners, and three of them a triangle.
-pub fn in_world(scene: &Scene) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
-    for (node, world) in scene.nodes.iter().zip(scene.world_transforms()) {
-        let Some(mesh) = node.mesh.map(|mesh| &scene.meshes[mesh as usize]) else { continue };
+/// The triangles of a scene in the world: corners, in metres, and three of them a triangle.
+///
+/// # Errors
+/// [`VolumeTreeError::TooManyCorners`], before any of them is placed.
+pub fn in_world(scene: &Scene) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), VolumeTreeError> {
+    let placed = || {
+        let meshes = scene.nodes.iter().map(|node| node.mesh.map(|mesh| &scene.meshes[mesh as usize]));
+        meshes.enumerate().filter_map(|(node, mesh)| Some((node, mesh?)))
+    };
+    let count = placed().map(|(_, mesh)| mesh.positions.len()).fold(0, usize::saturating_add);
+    if u32::try_from(count).is_err() {
+        return Err(VolumeTreeError::TooManyCorners(count));
+    }
+    let (mut positions, mut triangles) = (Vec::with_capacity(count), Vec::new());
+    let world = scene.world_transforms();
+    for (node, mesh) in placed() {
         let first = positions.len() as u32;
-        positions.extend(mesh.positions.iter().map(|position| world.transform_point3(*position)));
+        positions.extend(mesh.positions.iter().map(|position| world[node].transform_point3(*position)));
         triangles.extend(mesh.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
     }
-    (positions, triangles)
+    Ok((positions, triangles))
 }
 
 /// The corners of each triangle.
 fn places(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<[Vec3; 3]>, VolumeTreeError> {
-    let corners = positions.len();
-    let place = |(triangle, numbers): (usize, &[u32; 3])| {
+    // Not collected from results, which would not know how many there are to be.
+    let mut all = Vec::with_capacity(triangles.len());
+    for (triangle, numbers) in triangles.iter().enumerate() {
         let mut places = [Vec3::ZERO; 3];
         for (place, &corner) in places.iter_mut().zip(numbers) {
-            *place = *positions.get(corner as usize).ok_or(VolumeTreeError::NoCorner {
-                triangle,
-                corner,
-                corners,
-            })?;
+            let corners = positions.len();
+            let missing = VolumeTreeError::NoCorner { triangle, corner, corners };
+            *place = *positions.get(corner as usize).ok_or(missing)?;
         }
-        let fine = places.iter().all(|place| place.abs().cmplt(Vec3::splat(FARTHEST)).all());
-        if fine { Ok(places) } else { Err(VolumeTreeError::Odd(triangle)) }
-    };
-    triangles.iter().enumerate().map(place).collect()
+        if !places.iter().all(|place| place.abs().cmplt(Vec3::splat(FARTHEST)).all()) {
+            return Err(VolumeTreeError::Odd(triangle));
+        }
+        all.push(places);
+    }
+    Ok(all)
 }

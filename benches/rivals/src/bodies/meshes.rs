@@ -22,7 +22,7 @@ pub(super) struct Mesh {
 
 impl Mesh {
     fn new(scene: &Scene) -> Self {
-        let (positions, triangles) = in_world(scene);
+        let (positions, triangles) = in_world(scene).expect("fewer corners than there are numbers");
         Self { name: scene.name.clone(), positions, triangles }
     }
 

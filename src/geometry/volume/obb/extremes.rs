@@ -8,13 +8,19 @@
 //! time. These are judged by several turns, since a square is worst off along its diagonal, and the best of all is
 //! turned about its thinnest side.
 
-use glam::{Mat3A, Vec3, Vec3A, Vec4};
+mod columns;
+
+use columns::{Columns, extent};
+use glam::{Vec3, Vec3A, Vec4};
 
 /// Up to how many points all are looked at instead of the extreme ones.
 const FEW: usize = 24;
 
 /// Up to how many points, those of four triangles, planes through the two farthest apart stand for their covariance.
-const LEAF: usize = 12;
+pub(super) const LEAF: usize = 12;
+
+/// How many extreme points there are: two a direction.
+const EXTREME: usize = 14;
 
 /// Cosines and sines of four turns. They are written down, because to work them out takes longer than to try them.
 type Turns = [[f32; 4]; 2];
@@ -43,33 +49,22 @@ const TURNS: [Turns; 4] = [
 
 /// Axes to try for a box around some points, the best first; the world's come last.
 pub(super) fn axes(points: &[Vec3], principal: impl FnOnce() -> [Vec3; 3]) -> [[Vec3; 3]; 2] {
-    let extreme;
-    let measured: &[Vec3] = if points.len() <= FEW {
-        points
-    } else {
-        extreme = extreme_points(points);
-        &extreme
+    // As few groups of four as will do, and a number that the compiler knows.
+    let best = match points.len() {
+        0..=8 => Best::<2>::of(points).for_leaf(points),
+        9..=LEAF => Best::<3>::of(points).for_leaf(points),
+        13..=FEW => Best::<6>::of(points).for_few(principal()),
+        _ => {
+            let extreme = extreme_points(points);
+            Best::<4>::of(&extreme).for_many(principal(), &extreme)
+        }
     };
-    let mut lanes = [Vec3A::ZERO; FEW];
-    lanes.iter_mut().zip(measured).for_each(|(lane, point)| *lane = (*point).into());
-    let mut best = Best { points: &lanes[..measured.len()], axes: Vec3::AXES, surface: 0.0 };
-    best.surface = best.surface_of(Vec3::AXES);
-    if points.len() > LEAF {
-        let axes = best.thinnest_last(principal());
-        best.offer_turned(axes, &SOME);
-    } else {
-        best.of_leaf();
-    }
-    if points.len() > FEW {
-        best.of_tetrahedra(measured);
-    }
-    best.turn();
-    [best.axes, Vec3::AXES]
+    [best, Vec3::AXES]
 }
 
-fn extreme_points(points: &[Vec3]) -> [Vec3; 14] {
+fn extreme_points(points: &[Vec3]) -> [Vec3; EXTREME] {
     let first = points.first().copied().unwrap_or_default();
-    let mut extreme = [first; 14];
+    let mut extreme = [first; EXTREME];
     let (mut low, mut high) = (along(first), along(first));
     for &point in points {
         let now = along(point);
@@ -97,23 +92,44 @@ fn along(Vec3 { x, y, z }: Vec3) -> [Vec4; 2] {
     [Vec4::new(plus + z, plus - z, minus + z, minus - z), Vec4::new(x, y, z, 0.0)]
 }
 
-struct Best<'a> {
-    points: &'a [Vec3A],
+struct Best<const G: usize> {
+    points: Columns<G>,
     axes: [Vec3; 3],
     surface: f32,
 }
 
-impl Best<'_> {
-    /// The extents of the box with these axes.
-    fn extents(&self, axes: [Vec3; 3]) -> Vec3A {
-        // All three products of a point at once.
-        let along = Mat3A::from_cols_array_2d(&axes.map(|axis| axis.to_array())).transpose();
-        let (mut low, mut high) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
-        for point in self.points {
-            let at = along * *point;
-            (low, high) = (low.min(at), high.max(at));
+impl<const G: usize> Best<G> {
+    /// Those of the world, for some points.
+    fn of(points: &[Vec3]) -> Self {
+        let mut best = Self { points: Columns::of(points), axes: Vec3::AXES, surface: 0.0 };
+        best.surface = best.surface_of(Vec3::AXES);
+        best
+    }
+
+    /// The best for a leaf's points.
+    fn for_leaf(mut self, points: &[Vec3]) -> [Vec3; 3] {
+        if let Some(any) = points.first() {
+            self.of_leaf((*any).into());
         }
-        high - low
+        self.turned()
+    }
+
+    /// The best for a few points, given the axes of their covariance.
+    fn for_few(mut self, principal: [Vec3; 3]) -> [Vec3; 3] {
+        self.offer_turned(self.thinnest_last(principal), &[SOME]);
+        self.turned()
+    }
+
+    /// The best for the extreme ones of many points, given the axes of the covariance of all.
+    fn for_many(mut self, principal: [Vec3; 3], extreme: &[Vec3; EXTREME]) -> [Vec3; 3] {
+        self.offer_turned(self.thinnest_last(principal), &[SOME]);
+        self.of_tetrahedra(extreme);
+        self.turned()
+    }
+
+    /// The extents of the box with these axes.
+    fn extents(&self, axes: [Vec3; 3]) -> Vec3 {
+        Vec3::from_array(axes.map(|axis| extent(&self.points.along(axis))))
     }
 
     /// Half the surface of the box with these axes.
@@ -144,7 +160,7 @@ impl Best<'_> {
         }
     }
 
-    fn of_tetrahedra(&mut self, extreme: &[Vec3]) {
+    fn of_tetrahedra(&mut self, extreme: &[Vec3; EXTREME]) {
         let pairs = extreme.as_chunks::<2>().0;
         let Some([a, b]) = pairs
             .iter()
@@ -170,37 +186,23 @@ impl Best<'_> {
     }
 
     /// Offers the planes through the two points farthest apart and those farthest off their line, to either side, and
-    /// the plane along both pairs: two triangles have no other that is large.
-    fn of_leaf(&mut self) {
-        let Some(&any) = self.points.first() else { return };
-        let a = self.farthest(any, |point| point);
-        let b = self.farthest(a, |point| point);
+    /// the plane along both pairs: two triangles have no other that is large. `any` is one of the points.
+    fn of_leaf(&mut self, any: Vec3A) {
+        let a = self.points.farthest(any);
+        let b = self.points.farthest(a);
         let Some(along) = (b - a).try_normalize() else { return };
         // Across that line: from the point farthest off it to the one farthest from that.
-        let off = |point: Vec3A| (point - a).reject_from_normalized(along);
-        let c = self.farthest(Vec3A::ZERO, off);
-        let d = self.farthest(c, off);
+        let off = self.points.off_line(a, along);
+        let c = off.farthest(Vec3A::ZERO);
+        let d = off.farthest(c);
         for across in [c - d, c, d] {
             let Some(normal) = along.cross(across).try_normalize() else { continue };
             // As with a face: the normal may lean where all lie close to the line; the axes must not.
             let Some(side) = normal.cross(along).try_normalize() else { continue };
             let normal = along.cross(side).normalize_or_zero();
             // A square is worst off along its diagonal: a plane is judged by some of its turns.
-            self.offer_turned([along, side, normal].map(Vec3::from), &SOME);
+            self.offer_turned([along, side, normal].map(Vec3::from), &[SOME]);
         }
-    }
-
-    /// What is farthest from somewhere, of what a function makes of the points.
-    fn farthest(&self, from: Vec3A, made: impl Fn(Vec3A) -> Vec3A) -> Vec3A {
-        let (mut best, mut most) = (from, 0.0);
-        for point in self.points {
-            let there = made(*point);
-            let distance = there.distance_squared(from);
-            if distance > most {
-                (best, most) = (there, distance);
-            }
-        }
-        best
     }
 
     /// The same axes, the one along which the box is thinnest last.
@@ -210,30 +212,33 @@ impl Best<'_> {
         [1, 2, 0].map(|step| axes[(thinnest + step) % 3])
     }
 
-    /// Tries turns about the axis along which the box is thinnest.
-    fn turn(&mut self) {
-        let axes = self.thinnest_last(self.axes);
-        TURNS.iter().for_each(|turns| self.offer_turned(axes, turns));
+    /// The best so far, or turned about the axis along which the box is thinnest.
+    fn turned(mut self) -> [Vec3; 3] {
+        self.offer_turned(self.thinnest_last(self.axes), &TURNS);
+        self.axes
     }
 
     /// Offers axes turned about the third, four turns at once.
-    fn offer_turned(&mut self, [u, v, w]: [Vec3; 3], turns: &Turns) {
-        let [along, across, up] = [u, v, w].map(Vec3A::from);
-        let [cos, sin] = turns.map(Vec4::from_array);
-        let (mut low, mut high) = ([Vec4::INFINITY; 3], [Vec4::NEG_INFINITY; 3]);
-        for point in self.points {
-            let (a, b) = (along.dot(*point), across.dot(*point));
-            let turned = [cos * a + sin * b, cos * b - sin * a, Vec4::splat(up.dot(*point))];
-            for (i, at) in turned.into_iter().enumerate() {
-                (low[i], high[i]) = (low[i].min(at), high[i].max(at));
+    fn offer_turned(&mut self, [u, v, w]: [Vec3; 3], turns: &[Turns]) {
+        let z = Vec4::splat(extent(&self.points.along(w)));
+        let [along, across] = [u, v].map(|axis| self.points.along(axis).map(|four| four.to_array()));
+        for turns in turns {
+            let [cos, sin] = turns.map(Vec4::from_array);
+            let (mut low, mut high) = ([Vec4::INFINITY; 2], [Vec4::NEG_INFINITY; 2]);
+            let places = along.as_flattened().iter().zip(across.as_flattened());
+            for (&a, &b) in places.take(self.points.len()) {
+                let turned = [cos * a + sin * b, cos * b - sin * a];
+                for (i, at) in turned.into_iter().enumerate() {
+                    (low[i], high[i]) = (low[i].min(at), high[i].max(at));
+                }
             }
-        }
-        let [x, y, z] = [0, 1, 2].map(|i| high[i] - low[i]);
-        let surfaces = x * y + (x + y) * z;
-        for (turn, surface) in surfaces.to_array().into_iter().enumerate() {
-            if surface < self.surface {
-                let (cos, sin) = (turns[0][turn], turns[1][turn]);
-                (self.axes, self.surface) = ([u * cos + v * sin, v * cos - u * sin, w], surface);
+            let [x, y] = [0, 1].map(|i| high[i] - low[i]);
+            let surfaces = x * y + (x + y) * z;
+            for (turn, surface) in surfaces.to_array().into_iter().enumerate() {
+                if surface < self.surface {
+                    let (cos, sin) = (turns[0][turn], turns[1][turn]);
+                    (self.axes, self.surface) = ([u * cos + v * sin, v * cos - u * sin, w], surface);
+                }
             }
         }
     }

@@ -1,12 +1,12 @@
 //! The volumes that bodies can be wrapped in. The list is the table of contents.
 
 use super::stage::{PairStage, Trees};
-use super::{Asked, CollideSubject, Over};
+use super::{Asked, CollideSubject, Over, bend};
 use crate::geometry::overlap::AlignedObb;
 use crate::geometry::{Aabb, KDop, Obb, Overlap, Sphere};
 use crate::job::collide::{Costs, Times};
 use crate::machine::{Simulated, Threads};
-use crate::measure::subject::{Cell, MeasureError, Subject, SubjectCache, simulated};
+use crate::measure::subject::{Cell, MeasureError, Options, Subject, SubjectCache, simulated};
 use crate::record::THREADS;
 use std::rc::Rc;
 
@@ -17,10 +17,14 @@ pub(super) struct Kind {
     /// Measured times of its tests.
     times: Times,
     open: OpenKind,
+    /// The same of one body that bends.
+    pub(super) bend: OpenBend,
 }
 
 type OpenKind =
     fn(&Kind, &Cell, &Asked, Rc<PairStage>, &mut SubjectCache) -> Result<Box<dyn Subject>, MeasureError>;
+
+type OpenBend = fn(&Cell, bend::Asked, &Options, Rc<Threads>) -> Result<Box<dyn Subject>, MeasureError>;
 
 /// Declares the kinds with the measured times of their tests in nanoseconds: a pair tested by itself, and a block of
 /// eight, each with its visit. Least medians of five serial runs of 2,000 queries each, the robot in `factory-large`
@@ -35,6 +39,7 @@ macro_rules! kinds {
             name: $name,
             times: Times { pair: $pair, batch: $batch, triangles: TRIANGLES_NS },
             open: $open::<$Volume>,
+            bend: bend::with_volume::<$Volume>,
         }),*];
     };
 }

@@ -1,5 +1,5 @@
 //! The job `collide`: one body against another, pose by pose. The scene is two, the moving one first, joined by
-//! `" + "`: `robot + factory-large`.
+//! `" + "`: `robot + factory-large`. Of one alone, with `job.bend`, see [`bend`].
 //!
 //! Settings: `job.volume`, one of [`kinds::KINDS`]; `job.over` (`triangles`, `nodes`); `job.leaf`, triangles a leaf;
 //! `job.query` (`all`, `first`); `job.reach`, in metres; `job.place` (see [`place`]) with `job.gap`;
@@ -7,6 +7,7 @@
 //! moving one is made, in its data; and for each
 //! scheme `tasks` (`batches`, `pairs`).
 
+mod bend;
 mod kinds;
 mod place;
 mod stage;
@@ -95,6 +96,9 @@ pub(super) fn open(
     options: &Options,
     cache: &mut SubjectCache,
 ) -> Result<Box<dyn Subject>, MeasureError> {
+    if cell.settings.contains_key("job.bend") && !cell.scene.contains(PAIR) {
+        return bend::open(cell, options, cache);
+    }
     let asked = Asked::of(cell)?;
     if options.path.is_some() {
         let message = "the job `collide` places its bodies itself: it takes no --path".to_owned();
@@ -112,8 +116,8 @@ pub(super) fn open(
     let stage = match cache.pairs.get(&key) {
         Some(stage) => stage.clone(),
         None => {
-            let mover = Body::new(super::scene(mover)?, data.scale, data.offset);
-            let other = Body::new(super::scene(other)?, 1.0, data.offset);
+            let mover = Body::new(super::scene(mover)?, data.scale, data.offset)?;
+            let other = Body::new(super::scene(other)?, 1.0, data.offset)?;
             let stage = PairStage::new(mover, other, over, place, options.frames as usize, options.seed)?;
             let stage = Rc::new(stage);
             cache.pairs.insert(key, stage.clone());
@@ -182,8 +186,13 @@ impl<H: Borrow<M>, M: Machine, V: Overlap> CollideSubject<H, M, V> {
 }
 
 impl<H: Borrow<M>, M: Machine, V: Overlap> Subject for CollideSubject<H, M, V> {
-    fn sample(&mut self, _repeat: u32) -> Result<Vec<Sample>, MeasureError> {
-        self.go(None)
+    fn sample(&mut self, repeat: u32) -> Result<Vec<Sample>, MeasureError> {
+        let mut samples = self.go(None)?;
+        // The same in all repeats.
+        if repeat == 0 {
+            samples.extend(self.stage.places());
+        }
+        Ok(samples)
     }
 
     fn trace(&mut self, time: f64) -> Result<Option<FrameTrace>, MeasureError> {

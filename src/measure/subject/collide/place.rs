@@ -1,4 +1,4 @@
-//! Where the moving body is in each frame: `job.place`.
+//! Where the moving body is in each frame: `job.place`. What was found is told in rows (`mover_x` to `mover_turn_z`).
 //!
 //! - `here`: where its scene has it.
 //! - `gap`: beside the other along x, nearer by nothing than `job.gap` times the other's longest side.

@@ -1,14 +1,14 @@
 //! Two bodies ready to be moved against each other, and the trees over them.
 
 use super::place::{self, Place};
-use super::{Over, failed};
+use super::{Over, Sample, failed};
 use crate::geometry::{Overlap, Rigid, Sphere};
 use crate::job::collide::{Query, contacts};
 use crate::measure::MeasureError;
 use crate::scene::Scene;
 use crate::structure::VolumeTree;
 use crate::structure::volume_tree::in_world;
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, DQuat, Vec3};
 use std::any::Any;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -22,6 +22,10 @@ const BUILDS: usize = 3;
 /// Bodies of more triangles than this, together, are built once.
 const LARGE: usize = 1_000_000;
 
+/// What tells a place: where the origin is in metres, and a turn in radians.
+const PLACE: [[&str; 3]; 2] =
+    [["mover_x", "mover_y", "mover_z"], ["mover_turn_x", "mover_turn_y", "mover_turn_z"]];
+
 /// A body: a scene, and its triangles in the world.
 pub(super) struct Body {
     pub(super) scene: Scene,
@@ -31,14 +35,17 @@ pub(super) struct Body {
 
 impl Body {
     /// A scene, made larger or smaller and put elsewhere: all of its roots are.
-    pub(super) fn new(mut scene: Scene, scale: f32, offset: f32) -> Self {
+    ///
+    /// # Errors
+    /// It has more corners than can be numbered.
+    pub(super) fn new(mut scene: Scene, scale: f32, offset: f32) -> Result<Self, MeasureError> {
         let put = Affine3A::from_translation(Vec3::splat(offset)) * Affine3A::from_scale(Vec3::splat(scale));
         for &root in &scene.roots {
             let transform = &mut scene.nodes[root as usize].transform;
             *transform = put * *transform;
         }
-        let (positions, triangles) = in_world(&scene);
-        Self { scene, positions, triangles }
+        let (positions, triangles) = in_world(&scene).map_err(failed)?;
+        Ok(Self { scene, positions, triangles })
     }
 
     pub(super) fn tree<V: Overlap>(&self, over: Over, leaf: usize) -> Result<VolumeTree<V>, MeasureError> {
@@ -88,6 +95,21 @@ impl PairStage {
         }
         let poses = place::poses(&mover, &other, over, place, frames, seed)?;
         Ok(Self { mover, other, poses, trees: RefCell::default(), answers: RefCell::default() })
+    }
+
+    /// Where the moving body is, and how it is turned: of the first frame, and of each in which that changed.
+    pub(super) fn places(&self) -> Vec<Sample> {
+        let mut samples = Vec::new();
+        let mut last = None;
+        for (frame, pose) in
+            self.poses.iter().enumerate().filter(|(_, pose)| last.replace(**pose) != Some(**pose))
+        {
+            let turn = DQuat::from_mat3(&pose.rotation()).to_scaled_axis();
+            let numbers = [pose.translation().to_array(), turn.to_array()];
+            let named = PLACE.as_flattened().iter().zip(numbers.as_flattened());
+            samples.extend(named.map(|(metric, value)| Sample::of_frame(metric, frame, *value)));
+        }
+        samples
     }
 
     /// The trees of a kind, built when they are first asked for.

@@ -79,7 +79,7 @@ fn generated_scenes_never_change() {
         ("shell", 0x34acd0d835864471),
         ("shell-5", 0xcde249e75b4d4876),
         ("shell-1", 0x42c60fd3d6159879),
-        ("cloth", 0x0),
+        ("cloth", 0x670f720ebbdfe8b2),
     ];
     assert_eq!(prints, expected);
 }

@@ -81,7 +81,11 @@ pub(crate) unsafe fn meet<L: Lanes, T: TriangleTest>(
     // SAFETY: the processor is the caller's.
     unsafe {
         let found = T::within_edges(beam, triangles)?;
-        let (x, y, z) = (sides(beam.rises, triangles, 0), sides(beam.rises, triangles, 1), sides(beam.rises, triangles, 2));
+        let (x, y, z) = (
+            sides(beam.rises, triangles, 0),
+            sides(beam.rises, triangles, 1),
+            sides(beam.rises, triangles, 2),
+        );
         let all = [L::splat(f32::NEG_INFINITY), L::splat(f32::INFINITY)];
         let [enters, leaves] = slab(beam, all, [x[0], y[0], z[0]], [x[1], y[1], z[1]]);
         // A NaN stays one, as the second argument does.
@@ -104,6 +108,3 @@ pub(crate) unsafe fn sides<L: Lanes>(rises: [bool; 3], triangles: &impl Corners<
         if rises[axis] { [least, greatest] } else { [greatest, least] }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -19,8 +19,12 @@ pub(crate) unsafe fn slab<L: Lanes>(beam: &Beam<L>, reach: [L; 2], first: [L; 3]
     unsafe {
         let [x, y, z] = beam.origin;
         // A NaN among the first arguments is passed over.
-        let enters = first[1].sub(y).mul(beam.first_rate[1]).max(first[2].sub(z).mul(beam.first_rate[2]).max(reach[0]));
-        let leaves = last[1].sub(y).mul(beam.last_rate[1]).min(last[2].sub(z).mul(beam.last_rate[2]).min(reach[1]));
+        let enters = first[1]
+            .sub(y)
+            .mul(beam.first_rate[1])
+            .max(first[2].sub(z).mul(beam.first_rate[2]).max(reach[0]));
+        let leaves =
+            last[1].sub(y).mul(beam.last_rate[1]).min(last[2].sub(z).mul(beam.last_rate[2]).min(reach[1]));
         [
             first[0].sub(x).mul(beam.first_rate[0]).max(enters),
             last[0].sub(x).mul(beam.last_rate[0]).min(leaves),

@@ -52,7 +52,12 @@ impl Edges for Watertight {
 
 /// A corner as seen from the ray's origin, sheared so that the ray goes along z.
 #[inline(always)]
-unsafe fn sheared<L: Lanes>(beam: &Beam<L>, triangles: &impl Corners<L>, from: [L; 3], corner: usize) -> [L; 3] {
+unsafe fn sheared<L: Lanes>(
+    beam: &Beam<L>,
+    triangles: &impl Corners<L>,
+    from: [L; 3],
+    corner: usize,
+) -> [L; 3] {
     // SAFETY: the processor is the caller's.
     unsafe {
         let [x, y, z] = beam.axes;
@@ -75,7 +80,8 @@ unsafe fn weight<L: Lanes>(p: [L; 3], q: [L; 3]) -> L {
 unsafe fn exact<L: Lanes>([a, b, c]: [[L; 3]; 3], [u, v, w]: [L; 3]) -> [L; 3] {
     // SAFETY: the processor is the caller's.
     unsafe {
-        let places = [[column(a[0]), column(a[1])], [column(b[0]), column(b[1])], [column(c[0]), column(c[1])]];
+        let places =
+            [[column(a[0]), column(a[1])], [column(b[0]), column(b[1])], [column(c[0]), column(c[1])]];
         let mut weights = [column(u), column(v), column(w)];
         exactly(&places, &mut weights, L::LEN);
         [L::load(&weights[0], 0), L::load(&weights[1], 0), L::load(&weights[2], 0)]

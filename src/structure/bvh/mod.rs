@@ -1,11 +1,13 @@
 //! Bounding volume hierarchies for rays: binary ones as their builders make them, and wide ones that rays go through.
 
 mod binary;
+mod leaks;
 mod traverse;
 mod wide;
 
 pub use binary::{BinaryBvh, BinaryNode};
-pub use traverse::RayCounts;
+pub use leaks::leaks;
+pub use traverse::{RayCounts, TriangleList};
 pub use wide::WideBvh;
 
 use crate::geometry::{Hit, Ray};

@@ -4,6 +4,7 @@
 //! of all do the same operations in the same order.
 
 mod count;
+mod list;
 mod nearest;
 mod packet;
 mod single;
@@ -11,6 +12,7 @@ mod waiting;
 
 pub use count::RayCounts;
 use count::{Count, Uncounted};
+pub use list::TriangleList;
 use nearest::Nearest;
 use packet::{RAYS, together as walk_together};
 use single::through as walk_single;
@@ -150,3 +152,6 @@ impl<T: TriangleTest> Intersector for WideBvh<T> {
         self.closest_coherent_on(Unit::best(), rays, hits);
     }
 }
+
+#[cfg(test)]
+mod tests;

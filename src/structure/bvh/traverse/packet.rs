@@ -67,8 +67,11 @@ pub(super) unsafe fn together<N: Lanes, B: Lanes, T: TriangleTest, C: Count>(
                 // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 8.
                 unsafe {
                     let first = [node.row(rows[0], from), node.row(rows[1], from), node.row(rows[2], from)];
-                    let last =
-                        [node.row(rows[0] ^ 1, from), node.row(rows[1] ^ 1, from), node.row(rows[2] ^ 1, from)];
+                    let last = [
+                        node.row(rows[0] ^ 1, from),
+                        node.row(rows[1] ^ 1, from),
+                        node.row(rows[2] ^ 1, from),
+                    ];
                     let [first, last] = wide.slab(N::splat(farthest), first, last);
                     hit |= last.at_least(first) << from;
                     first.store(&mut enters, from);
@@ -90,8 +93,11 @@ pub(super) unsafe fn together<N: Lanes, B: Lanes, T: TriangleTest, C: Count>(
                 // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 4.
                 unsafe {
                     let some = Together { block, from };
-                    let (x, y, z) =
-                        (sides(span.rises, &some, 0), sides(span.rises, &some, 1), sides(span.rises, &some, 2));
+                    let (x, y, z) = (
+                        sides(span.rises, &some, 0),
+                        sides(span.rises, &some, 1),
+                        sides(span.rises, &some, 2),
+                    );
                     let [first, last] =
                         narrow.slab(B::splat(farthest), [x[0], y[0], z[0]], [x[1], y[1], z[1]]);
                     met |= last.at_least(first) << from;
@@ -109,7 +115,8 @@ pub(super) unsafe fn together<N: Lanes, B: Lanes, T: TriangleTest, C: Count>(
                         let Some(found) = meet::<N, T>(beam, &Alone { block, lane }) else { continue };
                         let lanes = found.lanes & found.t.at_least(N::splat(0.0));
                         if lanes != 0 {
-                            is_nearer |= Nearest::take_each(&mut nearest[from..], &aims[from..], &found, lanes, item);
+                            is_nearer |=
+                                Nearest::take_each(&mut nearest[from..], &aims[from..], &found, lanes, item);
                         }
                     }
                 }

@@ -57,7 +57,11 @@ unsafe fn walk<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
                 unsafe {
                     let reach = [N::splat(aim.near), N::splat(nearest.t)];
                     let first = [node.row(rows[0], from), node.row(rows[1], from), node.row(rows[2], from)];
-                    let last = [node.row(rows[0] ^ 1, from), node.row(rows[1] ^ 1, from), node.row(rows[2] ^ 1, from)];
+                    let last = [
+                        node.row(rows[0] ^ 1, from),
+                        node.row(rows[1] ^ 1, from),
+                        node.row(rows[2] ^ 1, from),
+                    ];
                     let [first, last] = slab(&beam, reach, first, last);
                     hit |= last.at_least(first) << from;
                     first.store(&mut enters, from);
@@ -78,7 +82,8 @@ unsafe fn walk<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
                 // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 4.
                 unsafe {
                     let Some(found) = meet::<B, T>(&block_beam, &Together { block, from }) else { continue };
-                    let in_reach = found.t.at_least(B::splat(aim.near)) & B::splat(nearest.t).at_least(found.t);
+                    let in_reach =
+                        found.t.at_least(B::splat(aim.near)) & B::splat(nearest.t).at_least(found.t);
                     let lanes = found.lanes & in_reach;
                     if lanes != 0 {
                         nearest.take(&found, lanes, &block.items[from..]);

@@ -50,14 +50,8 @@ struct Making<'a> {
 
 pub(super) fn collapse(binary: &BinaryBvh, triangles: &[[Vec3; 3]], scale: Scale) -> Collapsed {
     let (nodes, order) = small_leaves(binary, triangles, scale);
-    let mut making = Making {
-        plans: plan(nodes),
-        order,
-        triangles,
-        scale,
-        nodes: Vec::new(),
-        blocks: Vec::new(),
-    };
+    let mut making =
+        Making { plans: plan(nodes), order, triangles, scale, nodes: Vec::new(), blocks: Vec::new() };
     let (root, waiting) = making.make();
     Collapsed { root, nodes: making.nodes, blocks: making.blocks, waiting }
 }

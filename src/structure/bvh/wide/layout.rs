@@ -102,7 +102,9 @@ impl Block {
     pub(super) const EMPTY: Self = Self { corners: [[f32::NAN; TRIANGLES]; 9], items: [u32::MAX; TRIANGLES] };
 
     pub(super) fn set(&mut self, i: usize, corners: [Vec3; 3], item: u32) {
-        for (column, value) in self.corners.iter_mut().zip(corners.iter().flat_map(|corner| corner.to_array())) {
+        for (column, value) in
+            self.corners.iter_mut().zip(corners.iter().flat_map(|corner| corner.to_array()))
+        {
             column[i] = value;
         }
         self.items[i] = item;

@@ -1,7 +1,7 @@
 //! Where rays meet triangles: a fast test and a watertight one, of one ray with several triangles or of several rays
-//! with one, by the same code over [`Lanes`]; scalar code and every vector unit answer the same bit for bit.
+//! with one, by the same code over lanes; scalar code and every vector unit answer the same bit for bit.
 //!
-//! A hit lies within its triangle's own box, as the box test of a hierarchy's nodes ([`slab`]) sees it: `t` is moved
+//! A hit lies within its triangle's own box, as the box test of a hierarchy's nodes (`slab`) sees it: `t` is moved
 //! there, and what has no point in common with that box is no hit. Each step of that test keeps the order of its
 //! arguments when it is rounded, so a box around others is never passed over when one in it is met: a hierarchy tells
 //! the same as a list gone through item by item, however ill-conditioned a triangle is.

@@ -39,7 +39,7 @@ macro_rules! on_unit_through {
                 unsafe { $walk::<Lanes8, Lanes4, T, C $(, $const)?>(bvh, count, $($argument),*) }
             }
             match unit.0 {
-                // SAFETY: a `Unit` is only made where it is there, and every processor with AVX2 has the others.
+                // SAFETY: a `Unit` is only made where it is there, this one where the bit instructions are too.
                 #[cfg(target_arch = "x86_64")]
                 Kind::Avx2 => unsafe { avx2::<T, C $(, $const)?>(bvh, count, $($argument),*) },
                 // SAFETY: every x86-64 processor has the unit.

@@ -48,7 +48,7 @@ pub(super) unsafe fn together<N: Lanes, B: Lanes, T: TriangleTest, C: Count>(
     // SAFETY: the processor is the caller's.
     let (wide, narrow) = unsafe { (span.spread::<N>(), span.spread::<B>()) };
     let rows = span.rows();
-    // At least four lanes are behind each of these, or it is one and there are as many beams as rays.
+    // As many as it takes: the fewer lanes a vector has, the more beams there are.
     let mut beams = [const { MaybeUninit::<Beam<N>>::uninit() }; RAYS];
     for (beam, from) in beams.iter_mut().zip((0..RAYS).step_by(N::LEN)) {
         // SAFETY: as above; the lanes are below 16.

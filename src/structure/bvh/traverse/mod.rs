@@ -73,7 +73,7 @@ impl<T: TriangleTest> WideBvh<T> {
 
     /// The nearest hit, and what it took to find it, which is added to `counts`.
     pub fn closest_counted(&self, ray: &Ray, counts: &mut RayCounts) -> Option<Hit> {
-        self.closest_to(Unit::best(), ray, counts)
+        self.closest_to(self.unit, ray, counts)
     }
 
     /// Whether there is any hit, by a vector unit of one's choice.
@@ -84,7 +84,7 @@ impl<T: TriangleTest> WideBvh<T> {
 
     /// Whether there is any hit, and what it took to find out, which is added to `counts`.
     pub fn occluded_counted(&self, ray: &Ray, counts: &mut RayCounts) -> bool {
-        self.occluded_to(Unit::best(), ray, counts)
+        self.occluded_to(self.unit, ray, counts)
     }
 
     /// The nearest hits of rays that go much the same way, by a vector unit of one's choice.
@@ -140,16 +140,16 @@ impl<T: TriangleTest> WideBvh<T> {
 impl<T: TriangleTest> Intersector for WideBvh<T> {
     #[inline]
     fn closest(&self, ray: &Ray) -> Option<Hit> {
-        self.closest_on(Unit::best(), ray)
+        self.closest_on(self.unit, ray)
     }
 
     #[inline]
     fn occluded(&self, ray: &Ray) -> bool {
-        self.occluded_on(Unit::best(), ray)
+        self.occluded_on(self.unit, ray)
     }
 
     fn closest_coherent(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        self.closest_coherent_on(Unit::best(), rays, hits);
+        self.closest_coherent_on(self.unit, rays, hits);
     }
 }
 

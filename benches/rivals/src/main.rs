@@ -4,12 +4,14 @@
 //! |---|---|
 //! | `boxes` | random boxes culled: ours flat and as a tree, bevy, treeculler, parry |
 //! | `bodies [FILE]` | two bodies of triangles asked whether they touch, and their trees built: ours, parry; two threads |
+//! | `rays [FILE]` | rays through triangles: ours one by one and in packets, obvhs |
 //!
-//! FILE is a mesh of any format that apportion reads, a bunny by intention; without it a bumpy ball is made.
+//! FILE is a mesh of any format that apportion reads, a bunny by intention; without it a bumpy ball is made, for rays a shell.
 
 mod bodies;
 mod boxes;
 mod clock;
+mod rays;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -21,8 +23,10 @@ fn main() -> ExitCode {
         ["boxes"] => boxes::study(),
         ["bodies"] => bodies::study(None),
         ["bodies", file] => bodies::study(Some(Path::new(file))),
+        ["rays"] => rays::study(None),
+        ["rays", file] => rays::study(Some(Path::new(file))),
         _ => {
-            eprintln!("expected `boxes` or `bodies [FILE]`");
+            eprintln!("expected `boxes`, `bodies [FILE]` or `rays [FILE]`");
             return ExitCode::from(2);
         }
     }

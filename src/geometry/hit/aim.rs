@@ -1,6 +1,6 @@
 //! A ray made ready for tests.
 
-use super::scale::{Scale, to_one};
+use super::scale::{Scale, inverse, to_one};
 use crate::geometry::Ray;
 use crate::geometry::lanes::Lanes;
 use glam::Vec3;
@@ -49,9 +49,8 @@ impl Aim {
         let direction = ray.direction * lengthen;
         let small = direction.abs().cmplt(Vec3::splat(LEAST_PART));
         let direction = Vec3::select(small, Vec3::ZERO.copysign(direction), direction);
-        // Both are powers of two, so but for those far from 1 are product and inverse.
-        let lengths = scale.factor() / lengthen;
-        let stretch = 1.0 / lengths;
+        // All are powers of two: beyond the numbers' range if the ray's lengths do not lead through the scene.
+        let (lengths, stretch) = (scale.factor() * inverse(lengthen), scale.inverse() * lengthen);
         let usable = origin.is_finite()
             && ray.direction.is_finite()
             && longest > 0.0

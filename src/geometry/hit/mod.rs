@@ -1,9 +1,9 @@
 //! Where rays meet shapes: spheres, cones, triangles.
 //!
 //! Of triangles there is a fast test and a watertight one, of one ray with several or of several rays with one, by the
-//! same code over [`Lanes`]; scalar code and every vector unit answer the same bit for bit.
+//! same code over lanes; scalar code and every vector unit answer the same bit for bit.
 //!
-//! A hit lies within its triangle's own box, as the box test of a hierarchy's nodes ([`slab`]) sees it: `t` is moved
+//! A hit lies within its triangle's own box, as the box test of a hierarchy's nodes (`slab`) sees it: `t` is moved
 //! there, and what has no point in common with that box is no hit. Each step of that test keeps the order of its
 //! arguments when it is rounded, so a box around others is never passed over when one in it is met: a hierarchy tells
 //! the same as a list gone through item by item, however ill-conditioned a triangle is.
@@ -87,7 +87,11 @@ pub(crate) unsafe fn meet<L: Lanes, T: TriangleTest>(
     // SAFETY: the processor is the caller's.
     unsafe {
         let found = T::within_edges(beam, triangles)?;
-        let (x, y, z) = (sides(beam.rises, triangles, 0), sides(beam.rises, triangles, 1), sides(beam.rises, triangles, 2));
+        let (x, y, z) = (
+            sides(beam.rises, triangles, 0),
+            sides(beam.rises, triangles, 1),
+            sides(beam.rises, triangles, 2),
+        );
         let all = [L::splat(f32::NEG_INFINITY), L::splat(f32::INFINITY)];
         let [enters, leaves] = slab(beam, all, [x[0], y[0], z[0]], [x[1], y[1], z[1]]);
         // A NaN stays one, as the second argument does.
@@ -117,6 +121,3 @@ fn first_within(ray: &super::Ray, roots: [f64; 2]) -> Option<f32> {
     let within = |t: &f32| *t >= ray.near && *t <= ray.far;
     [a.min(b), a.max(b)].into_iter().find(within)
 }
-
-#[cfg(test)]
-mod tests;

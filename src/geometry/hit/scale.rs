@@ -23,6 +23,11 @@ impl Scale {
     pub fn factor(self) -> f32 {
         self.0
     }
+
+    /// How many metres one of this scale's lengths has.
+    pub fn inverse(self) -> f32 {
+        inverse(self.0)
+    }
 }
 
 /// The power of two that brings a number that is not negative to between 1 and 2, as far as powers of two go whose
@@ -31,4 +36,10 @@ impl Scale {
 pub(super) fn to_one(value: f32) -> f32 {
     let exponent = value.to_bits() >> 23;
     f32::from_bits((254 - exponent.min(253)).min(253) << 23)
+}
+
+/// One over a power of two that [`to_one`] told.
+#[inline]
+pub(super) fn inverse(power: f32) -> f32 {
+    f32::from_bits((254 << 23) - power.to_bits())
 }

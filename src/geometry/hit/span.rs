@@ -44,7 +44,9 @@ impl Span {
         };
         let [least, greatest] = over(|aim| aim.origin);
         let rises = rises(first);
-        let pick = |up: Vec3, down: Vec3| Vec3::from_array([0, 1, 2].map(|i| if rises[i] { up[i] } else { down[i] }));
+        let pick = |up: Vec3, down: Vec3| {
+            Vec3::from_array([0, 1, 2].map(|i| if rises[i] { up[i] } else { down[i] }))
+        };
         Some(Self {
             first_origin: pick(greatest, least),
             last_origin: pick(least, greatest),
@@ -99,7 +101,8 @@ impl<L: Lanes> Spread<L> {
     pub(crate) unsafe fn slab(&self, far: L, first: [L; 3], last: [L; 3]) -> [L; 2] {
         // SAFETY: the processor is the caller's.
         unsafe {
-            let enters = self.enters(first, 0).max(self.enters(first, 1).max(self.enters(first, 2).max(self.near)));
+            let enters =
+                self.enters(first, 0).max(self.enters(first, 1).max(self.enters(first, 2).max(self.near)));
             let leaves = self.leaves(last, 0).min(self.leaves(last, 1).min(self.leaves(last, 2).min(far)));
             [enters, leaves]
         }

@@ -27,7 +27,7 @@ impl Unit {
     pub fn all() -> impl Iterator<Item = Self> {
         [
             #[cfg(target_arch = "x86_64")]
-            (Kind::Avx2, is_x86_feature_detected!("avx2")),
+            (Kind::Avx2, has_avx2()),
             #[cfg(target_arch = "x86_64")]
             (Kind::Sse2, true),
             #[cfg(target_arch = "aarch64")]
@@ -42,6 +42,17 @@ impl Unit {
     pub fn best() -> Self {
         Self::all().next().unwrap_or(Self(Kind::Scalar))
     }
+}
+
+/// Whether there is AVX2, with the bit instructions that every processor has that has it, but that a virtual machine
+/// may hide.
+#[cfg(target_arch = "x86_64")]
+fn has_avx2() -> bool {
+    is_x86_feature_detected!("avx2")
+        && is_x86_feature_detected!("bmi1")
+        && is_x86_feature_detected!("bmi2")
+        && is_x86_feature_detected!("lzcnt")
+        && is_x86_feature_detected!("popcnt")
 }
 
 /// Declares a function that runs a kernel on the unit it is told: a generic function over [`Lanes`], unsafe because

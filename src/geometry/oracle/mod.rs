@@ -5,12 +5,14 @@
 //! convex bodies are apart exactly if an axis among their face normals and the cross products of their
 //! edges separates them. Slow and plain on purpose.
 
+mod ray;
 mod slabs;
 mod triangle;
 mod triangle_pair;
 
 use glam::{DVec3, Vec3};
 
+pub use ray::{Crossing, nearest_crossing};
 pub use triangle_pair::{GridPoint, triangles_meet};
 
 use super::{Aabb, Camera, KDop, Obb, PLANE_COUNT, Sphere, Volume};

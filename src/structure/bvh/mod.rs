@@ -2,13 +2,15 @@
 
 mod binary;
 pub mod build;
+mod leaks;
 pub mod refit;
 mod traverse;
 mod walk;
 mod wide;
 
 pub use binary::{BinaryBvh, BinaryNode, BvhStatistics};
-pub use traverse::RayCounts;
+pub use leaks::leaks;
+pub use traverse::{RayCounts, TriangleList};
 pub use wide::WideBvh;
 
 use crate::geometry::{Hit, Ray};

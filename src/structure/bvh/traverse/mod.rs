@@ -4,6 +4,7 @@
 //! of all do the same operations in the same order.
 
 mod count;
+mod list;
 mod nearest;
 mod packet;
 mod single;
@@ -11,6 +12,7 @@ mod waiting;
 
 pub use count::RayCounts;
 use count::{Count, Uncounted};
+pub use list::TriangleList;
 use nearest::Nearest;
 use packet::{RAYS, together as walk_together};
 use single::through as walk_single;
@@ -37,7 +39,7 @@ macro_rules! on_unit_through {
                 unsafe { $walk::<Lanes8, Lanes4, T, C $(, $const)?>(bvh, count, $($argument),*) }
             }
             match unit.0 {
-                // SAFETY: a `Unit` is only made where it is there, and every processor with AVX2 has the others.
+                // SAFETY: a `Unit` is only made where it is there, this one where the bit instructions are too.
                 #[cfg(target_arch = "x86_64")]
                 Kind::Avx2 => unsafe { avx2::<T, C $(, $const)?>(bvh, count, $($argument),*) },
                 // SAFETY: every x86-64 processor has the unit.
@@ -71,7 +73,7 @@ impl<T: TriangleTest> WideBvh<T> {
 
     /// The nearest hit, and what it took to find it, which is added to `counts`.
     pub fn closest_counted(&self, ray: &Ray, counts: &mut RayCounts) -> Option<Hit> {
-        self.closest_to(Unit::best(), ray, counts)
+        self.closest_to(self.unit, ray, counts)
     }
 
     /// Whether there is any hit, by a vector unit of one's choice.
@@ -82,7 +84,7 @@ impl<T: TriangleTest> WideBvh<T> {
 
     /// Whether there is any hit, and what it took to find out, which is added to `counts`.
     pub fn occluded_counted(&self, ray: &Ray, counts: &mut RayCounts) -> bool {
-        self.occluded_to(Unit::best(), ray, counts)
+        self.occluded_to(self.unit, ray, counts)
     }
 
     /// The nearest hits of rays that go much the same way, by a vector unit of one's choice.
@@ -138,15 +140,18 @@ impl<T: TriangleTest> WideBvh<T> {
 impl<T: TriangleTest> Intersector for WideBvh<T> {
     #[inline]
     fn closest(&self, ray: &Ray) -> Option<Hit> {
-        self.closest_on(Unit::best(), ray)
+        self.closest_on(self.unit, ray)
     }
 
     #[inline]
     fn occluded(&self, ray: &Ray) -> bool {
-        self.occluded_on(Unit::best(), ray)
+        self.occluded_on(self.unit, ray)
     }
 
     fn closest_coherent(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        self.closest_coherent_on(Unit::best(), rays, hits);
+        self.closest_coherent_on(self.unit, rays, hits);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -48,7 +48,7 @@ pub(super) unsafe fn together<N: Lanes, B: Lanes, T: TriangleTest, C: Count>(
     // SAFETY: the processor is the caller's.
     let (wide, narrow) = unsafe { (span.spread::<N>(), span.spread::<B>()) };
     let rows = span.rows();
-    // At least four lanes are behind each of these, or it is one and there are as many beams as rays.
+    // As many as it takes: the fewer lanes a vector has, the more beams there are.
     let mut beams = [const { MaybeUninit::<Beam<N>>::uninit() }; RAYS];
     for (beam, from) in beams.iter_mut().zip((0..RAYS).step_by(N::LEN)) {
         // SAFETY: as above; the lanes are below 16.
@@ -67,8 +67,11 @@ pub(super) unsafe fn together<N: Lanes, B: Lanes, T: TriangleTest, C: Count>(
                 // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 8.
                 unsafe {
                     let first = [node.row(rows[0], from), node.row(rows[1], from), node.row(rows[2], from)];
-                    let last =
-                        [node.row(rows[0] ^ 1, from), node.row(rows[1] ^ 1, from), node.row(rows[2] ^ 1, from)];
+                    let last = [
+                        node.row(rows[0] ^ 1, from),
+                        node.row(rows[1] ^ 1, from),
+                        node.row(rows[2] ^ 1, from),
+                    ];
                     let [first, last] = wide.slab(N::splat(farthest), first, last);
                     hit |= last.at_least(first) << from;
                     first.store(&mut enters, from);
@@ -90,8 +93,11 @@ pub(super) unsafe fn together<N: Lanes, B: Lanes, T: TriangleTest, C: Count>(
                 // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 4.
                 unsafe {
                     let some = Together { block, from };
-                    let (x, y, z) =
-                        (sides(span.rises, &some, 0), sides(span.rises, &some, 1), sides(span.rises, &some, 2));
+                    let (x, y, z) = (
+                        sides(span.rises, &some, 0),
+                        sides(span.rises, &some, 1),
+                        sides(span.rises, &some, 2),
+                    );
                     let [first, last] =
                         narrow.slab(B::splat(farthest), [x[0], y[0], z[0]], [x[1], y[1], z[1]]);
                     met |= last.at_least(first) << from;
@@ -109,7 +115,8 @@ pub(super) unsafe fn together<N: Lanes, B: Lanes, T: TriangleTest, C: Count>(
                         let Some(found) = meet::<N, T>(beam, &Alone { block, lane }) else { continue };
                         let lanes = found.lanes & found.t.at_least(N::splat(0.0));
                         if lanes != 0 {
-                            is_nearer |= Nearest::take_each(&mut nearest[from..], &aims[from..], &found, lanes, item);
+                            is_nearer |=
+                                Nearest::take_each(&mut nearest[from..], &aims[from..], &found, lanes, item);
                         }
                     }
                 }

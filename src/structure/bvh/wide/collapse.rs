@@ -12,7 +12,7 @@ use crate::geometry::hit::Scale;
 use crate::structure::bvh::{BinaryBvh, BinaryNode};
 use glam::Vec3;
 
-/// What a visit to a node takes, in visits to a block of triangles. Measured: see `benches/rivals`, `rays`.
+/// What a visit to a node takes, in visits to a block of triangles. Between 0.6 and 1 nothing changes that rays notice.
 const NODE: f32 = 1.0;
 /// Most triangles of a leaf.
 const LEAF: usize = TRIANGLES;

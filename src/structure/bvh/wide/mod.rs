@@ -11,6 +11,7 @@ mod layout;
 pub(super) use layout::{Alone, Block, Child, Node, TRIANGLES, Together, WIDTH};
 
 use super::BinaryBvh;
+use crate::geometry::Unit;
 use crate::geometry::hit::{Scale, TriangleTest, Watertight};
 use glam::Vec3;
 use std::marker::PhantomData;
@@ -26,6 +27,8 @@ pub struct WideBvh<T: TriangleTest = Watertight> {
     pub(super) blocks: Vec<Block>,
     /// How many children may wait at most while a ray goes through.
     pub(super) waiting: usize,
+    /// The widest there is, so that no ray need ask for it.
+    pub(super) unit: Unit,
     test: PhantomData<T>,
 }
 
@@ -43,6 +46,7 @@ impl<T: TriangleTest> WideBvh<T> {
             nodes: made.nodes,
             blocks: made.blocks,
             waiting: made.waiting,
+            unit: Unit::best(),
             test: PhantomData,
         }
     }

@@ -1,6 +1,7 @@
 use super::*;
 use crate::geometry::Aabb;
-use crate::machine::{Simulated, Threads};
+use crate::machine::Threads;
+use crate::machine::simulated::{Model, Simulated};
 use crate::scheme::tiles::SCHEMES;
 use crate::structure::bvh::build::phased::{Alone, Way};
 use crate::structure::bvh::build::{Builder, Settings};
@@ -8,7 +9,8 @@ use glam::Vec3;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn boxes(count: usize, turn: usize) -> Vec<Aabb> {
-    let at = |i: usize| Vec3::new((i * 7919 % 1009) as f32, (i * 104_729 % 997) as f32, (i * turn % 883) as f32);
+    let at =
+        |i: usize| Vec3::new((i * 7919 % 1009) as f32, (i * 104_729 % 997) as f32, (i * turn % 883) as f32);
     (0..count).map(at).map(|at| Aabb { min: at, max: at + 2.5 }).collect()
 }
 
@@ -39,7 +41,10 @@ fn refitted_everywhere<M: Machine>(machine: &M, processors: usize) {
     for count in [0, 1, 2, 9, 3000] {
         let (before, after) = (boxes(count, 3), boxes(count, 1_299_709));
         let mut bvh = BinaryBvh::default();
-        Builder::new("binned_sah", &Settings::default()).unwrap().build(&Input::of(&before), &mut bvh).unwrap();
+        Builder::new("binned_sah", &Settings::default())
+            .unwrap()
+            .build(&Input::of(&before), &mut bvh)
+            .unwrap();
         let mut expected = bvh.clone();
         crate::structure::bvh::refit::refit(&mut expected, &after);
         let job = Refit::new(machine, processors, &bvh);
@@ -67,7 +72,7 @@ fn a_hierarchy_built_by_threads_is_the_same() {
 
 #[test]
 fn a_hierarchy_built_by_simulated_processors_is_the_same() {
-    same_everywhere(&Simulated::preset("e4000").unwrap(), 7);
+    same_everywhere(&Simulated::new(Model::named("e4000").unwrap()), 7);
 }
 
 #[test]
@@ -76,5 +81,5 @@ fn refitting_is_the_same_on_every_machine() {
     for processors in [1, 2, 3] {
         refitted_everywhere(&threads, processors);
     }
-    refitted_everywhere(&Simulated::preset("e4000").unwrap(), 7);
+    refitted_everywhere(&Simulated::new(Model::named("e4000").unwrap()), 7);
 }

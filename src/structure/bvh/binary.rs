@@ -171,7 +171,9 @@ impl BinaryBvh {
             return Err(TreeError::new(0, format!("the leaves end at {next_item} of the order")));
         }
         match held.iter().zip(boxes).position(|(held, item)| item.is_empty() || !held.contains(item)) {
-            Some(item) => Err(TreeError::new(0, format!("item {item} is not within the leaves that hold it"))),
+            Some(item) => {
+                Err(TreeError::new(0, format!("item {item} is not within the leaves that hold it")))
+            }
             None => Ok(()),
         }
     }

@@ -102,10 +102,7 @@ pub(super) struct Bins {
 
 impl Bins {
     pub(super) fn new() -> Box<Self> {
-        Box::new(Self {
-            boxes: [[Box8::EMPTY; MOST_BINS]; 3],
-            loads: [[0; MOST_BINS]; 3],
-        })
+        Box::new(Self { boxes: [[Box8::EMPTY; MOST_BINS]; 3], loads: [[0; MOST_BINS]; 3] })
     }
 
     /// Empties as many bins as a grating has.

@@ -132,7 +132,8 @@ pub(super) fn grow<R: Rule>(
             Cut::Plane(split) => {
                 let (left, right) = to[range.clone()].split_at_mut(split.left);
                 let middles = part(rule.unit(), from, &split.plane, [left, right]);
-                let extents = [0, 1].map(|side| Extent { bounds: split.bounds[side], middles: middles[side] });
+                let extents =
+                    [0, 1].map(|side| Extent { bounds: split.bounds[side], middles: middles[side] });
                 (split.left, 1 - place, extents)
             }
         };

@@ -31,9 +31,9 @@ mod morton;
 pub mod phased;
 mod spatial_median;
 mod sweep_sah;
-mod top;
 #[cfg(test)]
 mod tests;
+mod top;
 mod yard;
 
 use super::BinaryBvh;
@@ -215,7 +215,8 @@ impl Settings {
     /// # Errors
     /// [`BuildError::Setting`].
     pub fn check(&self) -> Result<(), BuildError> {
-        let error = |setting, value: String, allowed: String| Err(BuildError::Setting { setting, value, allowed });
+        let error =
+            |setting, value: String, allowed: String| Err(BuildError::Setting { setting, value, allowed });
         if !(2..=MOST_BINS).contains(&self.bins) {
             return error("bins", self.bins.to_string(), format!("2 to {MOST_BINS}"));
         }

@@ -80,7 +80,8 @@ impl View {
         }
         // What is infinite is taken to end at twice the distance of all that is not.
         let numbers = boxes.iter().flat_map(|one| one.min.to_array().into_iter().chain(one.max.to_array()));
-        let farthest = numbers.filter(|number| number.is_finite()).fold(0.0, |far: f32, one| far.max(one.abs()));
+        let farthest =
+            numbers.filter(|number| number.is_finite()).fold(0.0, |far: f32, one| far.max(one.abs()));
         let limit = if farthest > 0.0 { farthest.min(f32::MAX / 2.0) * 2.0 } else { 1.0 };
         let size = if extent < LEAST { extent } else { limit };
         let power = size.log2().round().clamp(-126.0, 126.0);
@@ -101,7 +102,12 @@ impl View {
 }
 
 /// Copies some of the boxes, the first of them item `first`; an error tells the first bad one.
-pub(super) fn load(boxes: &[Aabb], first: usize, view: View, items: &mut [Item]) -> Result<Extent, BuildError> {
+pub(super) fn load(
+    boxes: &[Aabb],
+    first: usize,
+    view: View,
+    items: &mut [Item],
+) -> Result<Extent, BuildError> {
     let mut extent = Extent::EMPTY;
     for (i, (bounds, item)) in boxes.iter().zip(items).enumerate() {
         // Also not where one is no number.

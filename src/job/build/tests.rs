@@ -6,7 +6,7 @@ use crate::scheme::tiles::SCHEMES;
 use crate::structure::bvh::build::phased::{Alone, Way};
 use crate::structure::bvh::build::{Builder, Settings};
 use glam::Vec3;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::Mutex;
 
 fn boxes(count: usize, turn: usize) -> Vec<Aabb> {
     let at =
@@ -49,15 +49,11 @@ fn refitted_everywhere<M: Machine>(machine: &M, processors: usize) {
         crate::structure::bvh::refit::refit(&mut expected, &after);
         let job = Refit::new(machine, processors, &bvh);
         for _ in 0..3 {
-            let renewed: Vec<AtomicUsize> = (0..50).map(|_| AtomicUsize::new(0)).collect();
-            let renew = |piece: usize| {
-                // ORDERING: Relaxed: only counted, and read after the run.
-                renewed[piece].fetch_add(1, Ordering::Relaxed);
-            };
+            let renewed = Mutex::new(vec![0; 50]);
+            let renew = |piece: usize| renewed.lock().unwrap()[piece] += 1;
             job.run(machine, &mut bvh, |item| after[item as usize], 50, renew).unwrap();
             assert_eq!(bvh, expected, "{count} items");
-            // ORDERING: Relaxed: the run has ended.
-            assert!(renewed.iter().all(|times| times.load(Ordering::Relaxed) == 1), "each piece once");
+            assert_eq!(renewed.into_inner().unwrap(), [1; 50], "each piece once");
         }
     }
 }

@@ -235,6 +235,20 @@ fn better_builders_cost_rays_less() {
         "{sweep} {binned} {median} {morton}"
     );
     assert!(morton < binned * 1.3, "{binned} {morton}");
+    // Long thin triangles across all axes, which only cutting keeps apart.
+    let mut next = noise(8);
+    let mut point = |size: f32| Vec3::new(next(), next(), next()) * size;
+    let skinny: Vec<_> = (0..500).map(|_| point(1.0)).map(|at| [at, at + 5.0, at + point(0.1)]).collect();
+    let boxes = boxes_of(&skinny);
+    let [sweep, spatial] = ["sweep_sah", "spatial_splits"].map(|name| {
+        let mut bvh = BinaryBvh::default();
+        let mut builder = Builder::new(name, &Settings::default()).unwrap();
+        builder.build(&Input { boxes: &boxes, triangles: Some(&skinny) }, &mut bvh).unwrap();
+        bvh.validate(&boxes).unwrap();
+        assert!(bvh.order.len() <= 750, "references are bounded");
+        bvh.cost(1.0, 1.0)
+    });
+    assert!(spatial < sweep * 0.9, "{sweep} {spatial}");
 }
 
 #[test]
@@ -245,7 +259,8 @@ fn refitting_what_did_not_move_changes_nothing() {
         builder.build(&Input::of(&boxes), &mut bvh).unwrap();
         let built = bvh.clone();
         refit::refit(&mut bvh, &boxes);
-        assert_eq!(bvh, built, "{name}");
+        // What was cut in two is whole again.
+        assert!(bvh == built || name == "spatial_splits", "{name}");
         let moved: Vec<Aabb> = boxes_of(&scattered(1000, 4));
         refit::refit(&mut bvh, &moved);
         bvh.validate(&moved).unwrap();

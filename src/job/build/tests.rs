@@ -1,14 +1,16 @@
 use super::*;
 use crate::geometry::Aabb;
-use crate::machine::{Simulated, Threads};
+use crate::machine::Threads;
+use crate::machine::simulated::{Model, Simulated};
 use crate::scheme::tiles::SCHEMES;
 use crate::structure::bvh::build::phased::{Alone, Way};
 use crate::structure::bvh::build::{Builder, Settings};
 use glam::Vec3;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::Mutex;
 
 fn boxes(count: usize, turn: usize) -> Vec<Aabb> {
-    let at = |i: usize| Vec3::new((i * 7919 % 1009) as f32, (i * 104_729 % 997) as f32, (i * turn % 883) as f32);
+    let at =
+        |i: usize| Vec3::new((i * 7919 % 1009) as f32, (i * 104_729 % 997) as f32, (i * turn % 883) as f32);
     (0..count).map(at).map(|at| Aabb { min: at, max: at + 2.5 }).collect()
 }
 
@@ -39,20 +41,19 @@ fn refitted_everywhere<M: Machine>(machine: &M, processors: usize) {
     for count in [0, 1, 2, 9, 3000] {
         let (before, after) = (boxes(count, 3), boxes(count, 1_299_709));
         let mut bvh = BinaryBvh::default();
-        Builder::new("binned_sah", &Settings::default()).unwrap().build(&Input::of(&before), &mut bvh).unwrap();
+        Builder::new("binned_sah", &Settings::default())
+            .unwrap()
+            .build(&Input::of(&before), &mut bvh)
+            .unwrap();
         let mut expected = bvh.clone();
         crate::structure::bvh::refit::refit(&mut expected, &after);
         let job = Refit::new(machine, processors, &bvh);
         for _ in 0..3 {
-            let renewed: Vec<AtomicUsize> = (0..50).map(|_| AtomicUsize::new(0)).collect();
-            let renew = |piece: usize| {
-                // ORDERING: Relaxed: only counted, and read after the run.
-                renewed[piece].fetch_add(1, Ordering::Relaxed);
-            };
+            let renewed = Mutex::new(vec![0; 50]);
+            let renew = |piece: usize| renewed.lock().unwrap()[piece] += 1;
             job.run(machine, &mut bvh, |item| after[item as usize], 50, renew).unwrap();
             assert_eq!(bvh, expected, "{count} items");
-            // ORDERING: Relaxed: the run has ended.
-            assert!(renewed.iter().all(|times| times.load(Ordering::Relaxed) == 1), "each piece once");
+            assert_eq!(renewed.into_inner().unwrap(), [1; 50], "each piece once");
         }
     }
 }
@@ -67,7 +68,7 @@ fn a_hierarchy_built_by_threads_is_the_same() {
 
 #[test]
 fn a_hierarchy_built_by_simulated_processors_is_the_same() {
-    same_everywhere(&Simulated::preset("e4000").unwrap(), 7);
+    same_everywhere(&Simulated::new(Model::named("e4000").unwrap()), 7);
 }
 
 #[test]
@@ -76,5 +77,5 @@ fn refitting_is_the_same_on_every_machine() {
     for processors in [1, 2, 3] {
         refitted_everywhere(&threads, processors);
     }
-    refitted_everywhere(&Simulated::preset("e4000").unwrap(), 7);
+    refitted_everywhere(&Simulated::new(Model::named("e4000").unwrap()), 7);
 }

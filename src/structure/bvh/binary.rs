@@ -184,3 +184,78 @@ fn half_area(bounds: &Aabb) -> f64 {
     let size = bounds.max.as_dvec3() - bounds.min.as_dvec3();
     size.x * size.y + size.y * size.z + size.z * size.x
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    fn at(x: f32) -> Aabb {
+        Aabb { min: Vec3::splat(x), max: Vec3::splat(x + 1.0) }
+    }
+
+    /// Three items: the first two in a leaf, the third alone.
+    fn sound() -> (BinaryBvh, Vec<Aabb>) {
+        let boxes = vec![at(0.0), at(1.0), at(5.0)];
+        let nodes = vec![
+            BinaryNode { bounds: at(0.0).union(at(5.0)), first: 1, count: 0 },
+            BinaryNode { bounds: at(0.0).union(at(1.0)), first: 0, count: 2 },
+            BinaryNode { bounds: at(5.0), first: 2, count: 1 },
+        ];
+        (BinaryBvh { nodes, order: vec![1, 0, 2] }, boxes)
+    }
+
+    #[test]
+    fn whatever_is_broken_is_found() {
+        let (bvh, boxes) = sound();
+        bvh.validate(&boxes).expect("it is sound");
+        BinaryBvh::default().validate(&[]).expect("nothing is");
+        BinaryBvh::default().validate(&boxes).expect_err("items without nodes");
+        let broken: [(&str, fn(&mut BinaryBvh)); 16] = [
+            ("a child elsewhere", |bvh| bvh.nodes[0].first = 2),
+            ("a child before its parent", |bvh| bvh.nodes[0].first = 0),
+            ("a child that is not there", |bvh| drop(bvh.nodes.pop())),
+            ("a node nobody leads to", |bvh| bvh.nodes.push(bvh.nodes[2])),
+            ("a leaf that begins late", |bvh| bvh.nodes[1].first = 1),
+            ("a leaf that ends late", |bvh| bvh.nodes[2].count = 2),
+            ("a leaf that ends early", |bvh| bvh.nodes[1].count = 1),
+            ("a leaf that never ends", |bvh| bvh.nodes[2].count = u32::MAX),
+            ("an order that goes on", |bvh| bvh.order.push(0)),
+            ("an item that is not there", |bvh| bvh.order[1] = 3),
+            ("an item in the wrong leaf", |bvh| bvh.order.swap(1, 2)),
+            ("an item left out", |bvh| bvh.order[0] = 0),
+            ("a root too small", |bvh| bvh.nodes[0].bounds.max.x -= 0.5),
+            ("a root too large", |bvh| bvh.nodes[0].bounds.max.y += 0.5),
+            ("a leaf too small", |bvh| bvh.nodes[2].bounds.min.z += 0.5),
+            ("a box that is no number", |bvh| bvh.nodes[2].bounds.min.z = f32::NAN),
+        ];
+        for (what, breaking) in broken {
+            let mut bvh = bvh.clone();
+            breaking(&mut bvh);
+            assert!(bvh.validate(&boxes).is_err(), "{what} goes unnoticed");
+        }
+        let more = [&boxes[..], &[at(0.5)]].concat();
+        bvh.validate(&more).expect_err("an item is nowhere");
+        bvh.validate(&[at(0.0), at(1.0), Aabb::EMPTY]).expect_err("an item has no box");
+    }
+
+    #[test]
+    fn what_is_told_is_so() {
+        let (bvh, _) = sound();
+        let told = bvh.statistics();
+        let expected = BvhStatistics {
+            nodes: 3,
+            leaves: 2,
+            depth: 2,
+            leaves_by_items: vec![0, 1, 1],
+            references: 3,
+            bytes: 3 * 32 + 3 * 4,
+        };
+        assert_eq!(told, expected);
+        // Cubes of sides 6, 2 and 1: a step at the root, two items in a ninth of its surface, one in a 36th.
+        assert!((bvh.cost(1.0, 3.0) - (1.0 + 6.0 / 9.0 + 3.0 / 36.0)).abs() < 1e-12);
+        assert_eq!((bvh.below(0), bvh.below(1), bvh.below(2)), (1..3, 0..0, 0..0));
+        assert_eq!(BinaryBvh::default().cost(1.0, 1.0), 0.0);
+        assert_eq!(BinaryBvh::default().statistics(), BvhStatistics::default());
+    }
+}

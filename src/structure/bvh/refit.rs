@@ -163,7 +163,10 @@ mod tests {
         for count in [0, 1, 2, 3, 10, 500] {
             let (before, after) = (&boxes(1.0)[..count], &boxes(-3.0)[..count]);
             let mut bvh = BinaryBvh::default();
-            Builder::new("binned_sah", &Settings::default()).unwrap().build(&Input::of(before), &mut bvh).unwrap();
+            Builder::new("binned_sah", &Settings::default())
+                .unwrap()
+                .build(&Input::of(before), &mut bvh)
+                .unwrap();
             let mut serial = bvh.clone();
             refit(&mut serial, after);
             serial.validate(after).unwrap();
@@ -172,7 +175,8 @@ mod tests {
                 let mut parted = bvh.clone();
                 let (parts, above) = cut.part(&mut parted);
                 assert!(parts.len() >= wanted.min(serial.statistics().leaves));
-                let roots: Vec<Aabb> = parts.into_iter().map(|part| part.refit(&|item| after[item as usize])).collect();
+                let roots: Vec<Aabb> =
+                    parts.into_iter().map(|part| part.refit(&|item| after[item as usize])).collect();
                 above.refit(|subtree| roots[subtree]);
                 assert_eq!(parted, serial, "{count} items, {wanted} subtrees");
             }

@@ -56,19 +56,19 @@ fn spread(bits: u32) -> u64 {
 
 /// Cuts sorted codes into runs of at most so many; writes where each begins, and the end of the last.
 pub(super) fn clusters(codes: &[u64], most: usize, starts: &mut Vec<u32>) {
-    let mut open = vec![0..codes.len()];
-    while let Some(run) = open.pop() {
-        if run.len() <= most {
-            starts.push(run.start as u32);
+    let mut open = vec![(0, codes.len())];
+    while let Some((start, end)) = open.pop() {
+        if end - start <= most {
+            starts.push(start as u32);
             continue;
         }
         // Items in one place are told apart by their numbers, so that codes differ always.
-        let (first, last) = (codes[run.start], codes[run.end - 1]);
+        let (first, last) = (codes[start], codes[end - 1]);
         let highest = 63 - (first ^ last).leading_zeros();
-        let ahead = codes[run.clone()].partition_point(|code| code >> highest & 1 == 0);
-        let middle = run.start + ahead;
-        open.push(middle..run.end);
-        open.push(run.start..middle);
+        let ahead = codes[start..end].partition_point(|code| code >> highest & 1 == 0);
+        let middle = start + ahead;
+        open.push((middle, end));
+        open.push((start, middle));
     }
     starts.push(codes.len() as u32);
 }

@@ -92,7 +92,8 @@ pub(super) fn cut<T: Team>(
         }
         ranges.push(first..start);
     }
-    let moves: Vec<_> = moves.into_iter().map(|to| Mutex::new((to, vec![Extent::EMPTY; blocks.len()]))).collect();
+    let moves: Vec<_> =
+        moves.into_iter().map(|to| Mutex::new((to, vec![Extent::EMPTY; blocks.len()]))).collect();
     team.each(shares.len(), |i| {
         let (to, extents) = &mut *lock(&moves[i]);
         let mut at = vec![0; to.len()];

@@ -42,11 +42,16 @@ pub(super) trait Rule: Sync {
     /// What becomes of a node of at least two items.
     fn cut(&self, items: &[Item], extent: &Extent, bins: &mut Bins) -> Cut;
 
+    /// Whether a node at a depth may be cut as the rule has it.
+    fn may_cut(&self, depth: u32) -> bool {
+        depth < DEEPEST_CUT
+    }
+
     /// The same, so that depth and leaves have their bounds.
     fn cut_within(&self, items: &[Item], extent: &Extent, depth: u32, bins: &mut Bins) -> Cut {
         let cut = match items.len() {
             1 => Cut::Leaf,
-            _ if depth >= DEEPEST_CUT => Cut::Halves,
+            _ if !self.may_cut(depth) => Cut::Halves,
             _ => self.cut(items, extent, bins),
         };
         match cut {

@@ -22,6 +22,7 @@
 
 mod binned_sah;
 mod bins;
+mod clip;
 mod curve;
 mod grid;
 mod grow;
@@ -30,10 +31,11 @@ mod lanes;
 mod morton;
 pub mod phased;
 mod spatial_median;
+mod spatial_splits;
 mod sweep_sah;
-mod top;
 #[cfg(test)]
 mod tests;
+mod top;
 mod yard;
 
 use super::BinaryBvh;
@@ -89,11 +91,25 @@ pub struct Settings {
     pub step_cost: f32,
     /// What a ray pays for a test against an item, in the same unit.
     pub item_cost: f32,
+    /// From which overlap of its sides, as a part of the root's area, a cut is held against cutting space: the alpha of
+    /// Stich et al. 2009.
+    pub overlap: f32,
+    /// How many more references than items cutting space may make, as a part of the items.
+    pub duplicates: f32,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { bins: 16, most_in_leaf: 8, median_leaf: 2, cluster: 8, step_cost: 1.0, item_cost: 1.0 }
+        Self {
+            bins: 16,
+            most_in_leaf: 8,
+            median_leaf: 2,
+            cluster: 8,
+            step_cost: 1.0,
+            item_cost: 1.0,
+            overlap: 1e-5,
+            duplicates: 0.5,
+        }
     }
 }
 
@@ -184,6 +200,7 @@ builders! {
     sweep_sah => SweepSah,
     spatial_median => SpatialMedian,
     morton => Morton,
+    spatial_splits => SpatialSplits,
 }
 
 /// A builder with its settings and buffers.
@@ -228,7 +245,13 @@ impl Settings {
                 return error(setting, value.to_string(), "at least 1".to_owned());
             }
         }
-        for (setting, value) in [("step_cost", self.step_cost), ("item_cost", self.item_cost)] {
+        let numbers = [
+            ("step_cost", self.step_cost),
+            ("item_cost", self.item_cost),
+            ("overlap", self.overlap),
+            ("duplicates", self.duplicates),
+        ];
+        for (setting, value) in numbers {
             if !(value >= 0.0 && value.is_finite()) {
                 return error(setting, value.to_string(), "a number from 0".to_owned());
             }

@@ -147,7 +147,9 @@ impl Phased {
             }
         }
         match self.way {
-            Way::SahSah | Way::GridSah => below(&self.sah, &mut self.items, &top, &mut self.grown, bvh, team)?,
+            Way::SahSah | Way::GridSah => {
+                below(&self.sah, &mut self.items, &top, &mut self.grown, bvh, team)?
+            }
             Way::GridBih => below(&self.median, &mut self.items, &top, &mut self.grown, bvh, team)?,
         }
         top.assemble(&self.grown, bvh, team)?;
@@ -158,7 +160,8 @@ impl Phased {
     fn load<T: Team>(&mut self, input: &Input<'_>, view: View, team: &mut T) -> Result<Extent, T::Error> {
         let chunk = chunk_of(input.boxes.len());
         let chunks = input.boxes.chunks(chunk).zip(self.items[0].chunks_mut(chunk));
-        let chunks: Vec<_> = chunks.map(|(boxes, items)| Mutex::new((boxes, items, Ok(Extent::EMPTY)))).collect();
+        let chunks: Vec<_> =
+            chunks.map(|(boxes, items)| Mutex::new((boxes, items, Ok(Extent::EMPTY)))).collect();
         team.each(chunks.len(), |i| {
             let (boxes, items, told) = &mut *lock(&chunks[i]);
             *told = load(boxes, i * chunk, view, items);

@@ -49,7 +49,10 @@ pub(super) fn nasty() -> Vec<(&'static str, Vec<Aabb>)> {
         ("one point", vec![at(3.0, 3.0, 3.0, 0.0)]),
         ("all in one place", vec![at(1.0, 1.0, 1.0, 2.0); 1000]),
         ("all one point", vec![at(0.0, 0.0, 0.0, 0.0); 100]),
-        ("one middle, many sizes", (1..200).map(|i| at(-(i as f32), -(i as f32), -(i as f32), 2.0 * i as f32)).collect()),
+        (
+            "one middle, many sizes",
+            (1..200).map(|i| at(-(i as f32), -(i as f32), -(i as f32), 2.0 * i as f32)).collect(),
+        ),
         ("a line", (0..500).map(|i| at(i as f32, 0.0, 0.0, 0.0)).collect()),
         ("powers of two", (-120..120).map(|i| at((i as f32).exp2(), 0.0, 0.0, 0.0)).collect()),
         ("far away", moved(1e7)),
@@ -84,7 +87,9 @@ fn every_builder_survives_nasty_boxes() {
             // One after the other with the same builder: nothing may be left of the one before.
             for (what, boxes) in nasty() {
                 let mut bvh = BinaryBvh::default();
-                builder.build(&Input::of(&boxes), &mut bvh).unwrap_or_else(|error| panic!("{name}, {what}: {error}"));
+                builder
+                    .build(&Input::of(&boxes), &mut bvh)
+                    .unwrap_or_else(|error| panic!("{name}, {what}: {error}"));
                 bvh.validate(&boxes).unwrap_or_else(|error| panic!("{name}, {what}: {error}"));
                 let told = bvh.statistics();
                 let most = settings.most_in_leaf.max(settings.median_leaf);
@@ -225,8 +230,25 @@ fn better_builders_cost_rays_less() {
     };
     let (sweep, binned, median, morton) =
         (cost("sweep_sah"), cost("binned_sah"), cost("spatial_median"), cost("morton"));
-    assert!(sweep < binned * 1.02 && binned < median && binned < morton, "{sweep} {binned} {median} {morton}");
+    assert!(
+        sweep < binned * 1.02 && binned < median && binned < morton,
+        "{sweep} {binned} {median} {morton}"
+    );
     assert!(morton < binned * 1.3, "{binned} {morton}");
+    // Long thin triangles across all axes, which only cutting keeps apart.
+    let mut next = noise(8);
+    let mut point = |size: f32| Vec3::new(next(), next(), next()) * size;
+    let skinny: Vec<_> = (0..500).map(|_| point(1.0)).map(|at| [at, at + 5.0, at + point(0.1)]).collect();
+    let boxes = boxes_of(&skinny);
+    let [sweep, spatial] = ["sweep_sah", "spatial_splits"].map(|name| {
+        let mut bvh = BinaryBvh::default();
+        let mut builder = Builder::new(name, &Settings::default()).unwrap();
+        builder.build(&Input { boxes: &boxes, triangles: Some(&skinny) }, &mut bvh).unwrap();
+        bvh.validate(&boxes).unwrap();
+        assert!(bvh.order.len() <= 750, "references are bounded");
+        bvh.cost(1.0, 1.0)
+    });
+    assert!(spatial < sweep * 0.9, "{sweep} {spatial}");
 }
 
 #[test]
@@ -237,7 +259,8 @@ fn refitting_what_did_not_move_changes_nothing() {
         builder.build(&Input::of(&boxes), &mut bvh).unwrap();
         let built = bvh.clone();
         refit::refit(&mut bvh, &boxes);
-        assert_eq!(bvh, built, "{name}");
+        // What was cut in two is whole again.
+        assert!(bvh == built || name == "spatial_splits", "{name}");
         let moved: Vec<Aabb> = boxes_of(&scattered(1000, 4));
         refit::refit(&mut bvh, &moved);
         bvh.validate(&moved).unwrap();
@@ -289,7 +312,8 @@ mod phases {
             let mut bad = many[0].1.clone();
             bad[29_000] = Aabb::EMPTY;
             bad[700].min.x = f32::NAN;
-            let error = phased.build(&Input::of(&bad), &mut BinaryBvh::default(), &mut Backwards(4)).unwrap_err();
+            let error =
+                phased.build(&Input::of(&bad), &mut BinaryBvh::default(), &mut Backwards(4)).unwrap_err();
             assert!(matches!(error, BuildError::NoBox { item: 700, .. }), "{error}");
         }
     }

@@ -26,7 +26,7 @@ pub use eye::{Eye, default_view, light_at};
 pub use film::{Film, MOST_PIXELS};
 pub use frame::{Frame, Tiles};
 pub use image::Image;
-pub use list::List;
+pub use list::{List, intersector};
 pub use shade::{Look, MOST_DEPTH, Tracer};
 pub use world::{Items, World};
 

@@ -5,6 +5,7 @@ mod compare;
 mod list;
 mod print;
 mod progress;
+mod render;
 mod report;
 mod run;
 mod stress;
@@ -56,6 +57,7 @@ fn act(action: Action) -> Result<ExitCode> {
         Action::Table(words) => table::table(&words)?,
         Action::Report(words) => report::report(&words)?,
         Action::Advise(words) => advise::advise(&words)?,
+        Action::Render(words) => render::render(&words)?,
         Action::Compare(words) => compare::compare(&words)?,
         Action::Scene { scene } => print::line(&inspect::scene(&scene)?)?,
         Action::Machine { machine } => {

@@ -3,7 +3,7 @@
 use apportion::measure::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar over the cells of a run.
+/// A bar over the cells of a run, or the tiles of a picture.
 pub(crate) struct Bar(ProgressBar);
 
 impl Bar {
@@ -13,6 +13,19 @@ impl Bar {
             ProgressStyle::with_template("{prefix} [{bar:30}] {pos}/{len} {elapsed}, {eta} left: {msg}");
         let bar = ProgressBar::no_length().with_prefix(experiment.to_owned());
         Self(bar.with_style(style.expect("the template is a constant that a test draws")))
+    }
+
+    /// A bar over the tiles of a picture.
+    pub(crate) fn of_tiles(picture: &str, count: usize) -> Self {
+        let Self(bar) = Self::new(picture);
+        bar.set_length(count as u64);
+        bar.set_message("tracing");
+        Self(bar)
+    }
+
+    /// Shows that one more is done; any thread may say so.
+    pub(crate) fn more(&self) {
+        self.0.inc(1);
     }
 
     /// Shows which cell is next.
@@ -33,5 +46,8 @@ mod tests {
     #[test]
     fn the_template_can_be_read() {
         super::Bar::new("cull-large").end();
+        let bar = super::Bar::of_tiles("room", 2);
+        bar.more();
+        bar.end();
     }
 }

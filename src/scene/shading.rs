@@ -4,6 +4,8 @@
 
 use glam::{Vec2, Vec3};
 
+use super::Scene;
+
 /// What a surface does with light (Parker et al. 1999, sec. 3.1; PK-08). A term that is black is not evaluated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -134,6 +136,17 @@ impl Materials {
         }
     }
 
+    /// The same materials, by numbers that are greater by so much.
+    fn renumber(&mut self, by: u32) {
+        match self {
+            Self::Unknown => {}
+            Self::One(material) => *material += by,
+            Self::Each(each) => {
+                each.iter_mut().filter(|material| **material != u32::MAX).for_each(|m| *m += by)
+            }
+        }
+    }
+
     /// As short as they can be said.
     pub(super) fn from_each(each: Vec<u32>) -> Self {
         match each.first() {
@@ -202,4 +215,51 @@ pub struct Shading {
     pub normals: Corners<Vec3>,
     /// Texture coordinates.
     pub coordinates: Corners<Vec2>,
+}
+
+impl Scene {
+    /// Takes over the materials, textures and warnings of another scene, whose meshes know them by their new numbers
+    /// from then on.
+    pub(super) fn take_look(&mut self, other: &mut Self) {
+        let (materials, textures) = (self.materials.len() as u32, self.textures.len() as u32);
+        for texture in other.materials.iter_mut().filter_map(|material| material.texture.as_mut()) {
+            *texture += textures;
+        }
+        other.meshes.iter_mut().for_each(|mesh| mesh.shading.materials.renumber(materials));
+        self.materials.append(&mut other.materials);
+        self.textures.append(&mut other.textures);
+        self.warnings.append(&mut other.warnings);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Mesh;
+
+    #[test]
+    fn what_is_taken_over_is_renumbered() {
+        let part = |colour: f32| {
+            let mut scene = Scene::new("part");
+            scene.textures.push(Texture {
+                name: "t".into(),
+                width: 1,
+                height: 1,
+                pixels: vec![[colour as u8; 3]],
+            });
+            scene.add_material(Material { texture: Some(0), ..Material::matt("m", Vec3::splat(colour)) });
+            let mut mesh = Mesh::new("m", vec![Vec3::ZERO; 3], vec![[0; 3]; 2]);
+            mesh.shading.materials = Materials::from_each(vec![u32::MAX, 0]);
+            scene.add_mesh(mesh);
+            scene
+        };
+        let (mut whole, mut other) = (part(0.0), part(1.0));
+        whole.take_look(&mut other);
+        whole.meshes.append(&mut other.meshes);
+        whole.validate().unwrap();
+        let shading = &whole.meshes[1].shading;
+        assert_eq!([shading.materials.of(0), shading.materials.of(1)], [None, Some(1)]);
+        assert_eq!(whole.materials[1].texture, Some(1));
+        assert_eq!((whole.materials[1].diffuse, whole.textures[1].pixels[0]), (Vec3::ONE, [1; 3]));
+    }
 }

@@ -246,7 +246,9 @@ fn completions_and_manual_are_printed() {
 #[test]
 fn every_help_has_examples() {
     let folder = empty();
-    for word in ["list", "run", "table", "compare", "scene", "machine", "stress", "completions", "man"] {
+    for word in
+        ["list", "run", "table", "compare", "render", "scene", "machine", "stress", "completions", "man"]
+    {
         let text = out(&apportion(folder.path(), &["help", word]));
         let examples = text.split_once("Examples:\n").map_or("", |(_, examples)| examples);
         assert!(examples.contains(&format!("  apportion {word}")), "{text}");

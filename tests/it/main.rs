@@ -13,6 +13,7 @@ mod memory;
 mod mock;
 mod page;
 mod record;
+mod render;
 mod report;
 mod run;
 mod scene;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use apportion::scene::{self, Cache, CameraPath, GENERATORS, Origin, Scene};
+use apportion::scene::{self, Cache, CameraPath, GENERATORS, Origin, Scene, Shape};
 
 /// A real scene, or `None` with a note: the package has to pass its tests without them.
 fn real(file: &str) -> Option<Scene> {
@@ -32,6 +32,15 @@ fn fingerprint(scene: &Scene) -> u64 {
         add(&node.mesh.unwrap_or(u32::MAX).to_le_bytes());
         // Adding 0 makes -0 and 0, which are the same place, the same bytes.
         node.transform.to_cols_array().iter().for_each(|number| add(&(number + 0.0).to_le_bytes()));
+    }
+    for primitive in &scene.primitives {
+        let numbers = match primitive.shape {
+            Shape::Sphere(ball) => [ball.centre.to_array(), [ball.radius, 0.0, 0.0]].concat(),
+            Shape::Cone(cone) => {
+                [cone.base.to_array(), cone.tip.to_array(), [cone.base_radius, cone.tip_radius, 0.0]].concat()
+            }
+        };
+        numbers.into_iter().for_each(|number| add(&(number + 0.0).to_le_bytes()));
     }
     for mesh in &scene.meshes {
         mesh.positions

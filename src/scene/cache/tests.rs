@@ -186,6 +186,7 @@ fn what_is_wrong_behind_a_right_checksum_is_refused_too() {
     let mesh = scene.add_mesh(super::super::Mesh::new("m", vec![glam::Vec3::ONE; 3], vec![[0, 1, 2]]));
     let root = scene.add_node(None, "r", glam::Affine3A::IDENTITY, None);
     scene.add_node(Some(root), "n", glam::Affine3A::IDENTITY, Some(mesh));
+    be_seen(&mut scene);
     let stamp = Stamp { name: "b.ply".into(), size: 9, modified: Some(SystemTime::UNIX_EPOCH + SETTLED) };
     let good = layout::encode(path, &[stamp], &scene).unwrap();
     assert_eq!(print(&layout::decode(&good, path).unwrap().1), print(&scene));
@@ -204,4 +205,33 @@ fn what_is_wrong_behind_a_right_checksum_is_refused_too() {
         }
     }
     assert!(accepted > 0 && accepted < 4 * body);
+}
+
+/// Gives a scene of one mesh some of everything it can be seen with.
+fn be_seen(scene: &mut Scene) {
+    use super::super::{Corners, Material, Materials, PointLight, Primitive, Shape, Texture, View};
+    use crate::geometry::{Sphere, hit::Cone};
+    use glam::{Vec2, Vec3};
+    scene.add_material(Material { texture: Some(0), ..Material::polished("coat", Vec3::X, 1.5) });
+    scene.add_material(Material::dielectric("glass", 1.3));
+    let shading = &mut scene.meshes[0].shading;
+    shading.materials = Materials::Each(vec![1]);
+    shading.normals = Corners::of_vertices(vec![Vec3::Y; 3]);
+    shading.coordinates = Corners { values: vec![Vec2::X], triangles: Some(vec![[0, 0, u32::MAX]]) };
+    scene.textures.push(Texture {
+        name: "t".into(),
+        width: 1,
+        height: 2,
+        pixels: vec![[1, 2, 3], [4, 5, 6]],
+    });
+    scene.lights.push(PointLight { position: Vec3::Z, colour: Vec3::ONE });
+    let ball = Sphere { centre: Vec3::Z, radius: 2.0 };
+    let cone = Cone { base: Vec3::X, base_radius: 1.0, tip: Vec3::Y, tip_radius: 0.0 };
+    scene.primitives = vec![
+        Primitive { shape: Shape::Sphere(ball), material: None },
+        Primitive { shape: Shape::Cone(cone), material: Some(1) },
+    ];
+    scene.view = Some(View { eye: Vec3::X, look: Vec3::Y, up: Vec3::Z, fov_y: 0.5 });
+    scene.warnings.push("something is not there".into());
+    scene.validate().unwrap();
 }

@@ -140,3 +140,47 @@ fn deeply_nested_nodes_do_not_overflow_the_stack() {
     );
     assert_eq!(read(folder.path(), "deep.gltf", text.as_bytes()).unwrap().nodes.len(), count);
 }
+
+#[test]
+fn materials_are_read_and_a_picture_that_is_not_there_is_a_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    let look = r#""materials":[{"name":"plain"},{"name":"red","alphaMode":"BLEND","pbrMetallicRoughness":{
+        "baseColorFactor":[1,0.5,0,0.5],"metallicFactor":0,"roughnessFactor":0.1,"baseColorTexture":{"index":0}}}],
+        "textures":[{"source":0}],"images":[{"uri":"gone%20away.png"}],"accessors""#;
+    let text =
+        json("").replace(r#""indices":1"#, r#""indices":1,"material":1"#).replace(r#""accessors""#, look);
+    let scene = read(folder.path(), "a.glb", &glb(&text, &buffer())).unwrap();
+    assert_eq!(scene.warnings, ["texture \"gone away.png\" is not there"]);
+    assert_eq!(scene.meshes[0].shading.materials, Materials::One(1));
+    let (plain, red) = (&scene.materials[0], &scene.materials[1]);
+    // The default of glTF is rough metal.
+    assert_eq!((plain.diffuse, plain.highlight, plain.mirror), (Vec3::ZERO, Vec3::ONE, Vec3::ZERO));
+    assert_eq!((red.diffuse, red.transmission), (Vec3::new(0.5, 0.25, 0.0), Vec3::splat(0.5)));
+    assert!(
+        red.fresnel && red.mirror == Vec3::splat(0.04) && red.texture.is_none() && red.exponent == 10_000
+    );
+}
+
+#[test]
+fn normals_and_texture_coordinates_lie_beside_their_vertices() {
+    let folder = tempfile::tempdir().unwrap();
+    // The corners again, as normals; their first two numbers at the same stride, as texture coordinates.
+    let more = r#""accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC2"},"#;
+    let text = json("")
+        .replace(r#""accessors":["#, more)
+        .replace(r#""POSITION":0"#, r#""POSITION":1,"NORMAL":1,"TEXCOORD_0":0"#);
+    let text = text
+        .replace(r#""indices":1"#, r#""indices":2"#)
+        .replace(r#""byteLength":48}"#, r#""byteLength":48,"byteStride":12}"#);
+    let scene = read(folder.path(), "a.glb", &glb(&text, &buffer())).unwrap();
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    let mesh = &scene.meshes[0];
+    let vertices = mesh.triangles[1];
+    assert_eq!(mesh.shading.normals.of(1, vertices), Some([0, 2, 3].map(|vertex| mesh.positions[vertex])));
+    let expected = [Vec2::ZERO, Vec2::ONE, Vec2::Y];
+    assert_eq!(mesh.shading.coordinates.of(1, vertices), Some(expected));
+    // Normals of the wrong kind leave the shape as it is.
+    let wrong = text.replace(r#""NORMAL":1"#, r#""NORMAL":0"#);
+    let scene = read(folder.path(), "b.glb", &glb(&wrong, &buffer())).unwrap();
+    assert!(scene.warnings.len() == 1 && scene.meshes[0].shading.normals.values.is_empty());
+}

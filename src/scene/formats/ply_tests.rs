@@ -178,3 +178,26 @@ proptest! {
         prop_assert_eq!(&scene.meshes[0].triangles, &triangles);
     }
 }
+
+#[test]
+fn normals_are_kept_where_all_three_are_given() {
+    let text = |names: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float nx\nproperty float y\n\
+             property float z\nproperty float ny\nproperty float {names}\nelement face 1\n\
+             property list uchar int vertex_indices\nend_header\n\
+             0 0.5 0 0 0.25 1\n1 nan 0 0 0 1\n0 0 1 0 0 -2\n3 0 1 2\n"
+        )
+    };
+    let read = |text: String| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("model.ply");
+        std::fs::write(&path, text).unwrap();
+        crate::scene::load(&path).unwrap().meshes.remove(0)
+    };
+    let mesh = read(text("nz"));
+    let expected = [Vec3::new(0.5, 0.25, 1.0), Vec3::ZERO, Vec3::new(0.0, 0.0, -2.0)];
+    assert_eq!(mesh.shading.normals.of(0, mesh.triangles[0]), Some(expected), "NaN is none");
+    assert_eq!(mesh.positions[2], Vec3::Y);
+    assert_eq!(read(text("other")).shading.normals.of(0, [0, 1, 2]), None);
+}

@@ -145,6 +145,7 @@ impl<'a> Shapes<'a> {
                 self.source.note(Stamp { name: from_here.to_string_lossy().into_owned(), ..stamp });
             }
             let first = scene.meshes.len() as u32;
+            scene.take_look(&mut part);
             scene.meshes.append(&mut part.meshes);
             part.nodes.iter_mut().filter_map(|node| node.mesh.as_mut()).for_each(|mesh| *mesh += first);
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();

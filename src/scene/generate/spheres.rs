@@ -46,7 +46,7 @@ fn flock(name: &str, count: u32) -> Scene {
         PointLight { position: Vec3::new(3.0, 1.0, 1.0) * half, colour: Vec3::splat(0.3) },
     ];
     scene.view =
-        Some(View { eye: Vec3::new(1.4, 1.1, 2.3) * half, look: Vec3::ZERO, up: Vec3::Y, fov_y: 0.75 });
+        Some(View { eye: Vec3::new(1.4, 1.1, 2.3) * half, look: Vec3::ZERO, up: Vec3::Y, fov_y: 1.05 });
     scene
 }
 

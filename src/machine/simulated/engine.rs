@@ -143,7 +143,8 @@ impl Engine {
         let p = self.current;
         let mut clock = self.clocks[p];
         // A machine whose memories cannot do it has the line brought.
-        let kind = if kind == Kind::AtMemory && self.model.network.at_memory == 0 { Kind::Atomic } else { kind };
+        let kind =
+            if kind == Kind::AtMemory && self.model.network.at_memory == 0 { Kind::Atomic } else { kind };
         self.statistics.accesses += 1;
         let stores = &mut self.stores[p];
         while stores.front().is_some_and(|&done| done <= clock) {

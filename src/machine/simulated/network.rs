@@ -166,7 +166,10 @@ mod tests {
             let nodes = model.network.nodes(processors);
             let sum: u64 = (1..nodes).map(|node| model.memory + model.network.travel(0, node)).sum();
             let mean = ns(sum as f64 / (nodes - 1) as f64);
-            assert!((mean / printed - 1.0).abs() < 0.03, "{processors} processors: {mean} ns, printed {printed}");
+            assert!(
+                (mean / printed - 1.0).abs() < 0.03,
+                "{processors} processors: {mean} ns, printed {printed}"
+            );
         }
     }
 }

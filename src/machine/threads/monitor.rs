@@ -33,8 +33,7 @@ impl Monitor<Thread> for NativeMonitor {
         }
         let was = cpu.begin_wait();
         while !may_go(before, *value) {
-            let (woken, timeout) =
-                self.changed.wait_timeout(value, LOOK).unwrap_or_else(|e| e.into_inner());
+            let (woken, timeout) = self.changed.wait_timeout(value, LOOK).unwrap_or_else(|e| e.into_inner());
             value = woken;
             if timeout.timed_out() {
                 cpu.end_if_told();

@@ -1,4 +1,5 @@
 use super::*;
+use crate::machine::Monitor;
 
 fn e4000() -> Simulated {
     Simulated::new(Model::named("e4000").unwrap())

@@ -118,12 +118,18 @@ mod tests {
     #[test]
     fn the_work_is_where_it_should_be_and_as_much() {
         let machine = machine();
-        for (cost, pieces) in [(Cost::Spread, 1024), (Cost::Corner, 1024), (Cost::Corner, 1000), (Cost::Corner, 1)] {
+        for (cost, pieces) in
+            [(Cost::Spread, 1024), (Cost::Corner, 1024), (Cost::Corner, 1000), (Cost::Corner, 1)]
+        {
             let tiles = SyntheticTiles::new(&machine, pieces, 900..=1100, cost, 3);
             let mean = tiles.cycles() as f64 / pieces as f64 / machine.ticks_per_nanosecond();
             assert!((890.0..1110.0).contains(&mean), "{cost:?}, {pieces} pieces: {mean} ns");
             let dear = tiles.pieces.iter().filter(|piece| piece.cycles > 0).count();
-            let expected = if cost == Cost::Spread { pieces..=pieces } else { pieces.div_ceil(20)..=pieces.div_ceil(12) };
+            let expected = if cost == Cost::Spread {
+                pieces..=pieces
+            } else {
+                pieces.div_ceil(20)..=pieces.div_ceil(12)
+            };
             assert!(expected.contains(&dear), "{cost:?}, {pieces} pieces: {dear} dear ones");
         }
     }

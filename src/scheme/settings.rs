@@ -157,7 +157,8 @@ impl Settings {
         if has(kind) {
             return Ok(kind);
         }
-        let expected = format!("fetch_op or tree: how long the system of `{}` takes is not known", machine.name());
+        let expected =
+            format!("fetch_op or tree: how long the system of `{}` takes is not known", machine.name());
         Err(self.wrong("barrier", "system", expected))
     }
 

@@ -64,7 +64,8 @@ fn schemes<M: Machine>(machine: &M, processors: usize) -> impl Iterator<Item = S
     let names = SCHEMES.iter().filter(|scheme| machine.is_native() || !scheme.native_only);
     names.flat_map(move |about| {
         // Locks that serve in order wait for the system's clock where there are more threads than cores.
-        let slow = |pairs: &&&[(&str, &str)]| machine.is_native() && pairs.iter().any(|(key, _)| *key == "lock");
+        let slow =
+            |pairs: &&&[(&str, &str)]| machine.is_native() && pairs.iter().any(|(key, _)| *key == "lock");
         SETTINGS.iter().filter(move |pairs| !slow(pairs)).filter_map(move |pairs| {
             let given = pairs.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned()));
             match Scheme::new(about.name, machine, processors, given.collect()) {
@@ -98,7 +99,11 @@ fn check_defaults<M: Machine>(machine: &M, processors: usize, count: usize, with
     let names = SCHEMES.iter().filter(|scheme| machine.is_native() || !scheme.native_only);
     for about in names.filter(|about| !without.contains(&about.name)) {
         let mut scheme = Scheme::new(about.name, machine, processors, BTreeMap::new()).expect("defaults");
-        assert_once(about.name, count, scheme.run(machine, &Pieces { count, rotten: None }).expect("no panic"));
+        assert_once(
+            about.name,
+            count,
+            scheme.run(machine, &Pieces { count, rotten: None }).expect("no panic"),
+        );
     }
 }
 
@@ -189,7 +194,11 @@ impl TileWork for Frame<'_> {
     fn work_on<P: Processor>(&self, pieces: Range<usize>, found: &mut Vec<usize>, cpu: &P) {
         // ORDERING: Relaxed: the barrier of the run orders one frame and the next.
         let before = self.number.checked_sub(1).map(|before| self.done[before].load(Ordering::Relaxed));
-        assert!(before.is_none_or(|before| before as usize == self.count), "frame {} came early", self.number);
+        assert!(
+            before.is_none_or(|before| before as usize == self.count),
+            "frame {} came early",
+            self.number
+        );
         for piece in pieces {
             if self.rotten == Some((self.number, piece)) {
                 // As a panic, but the hook prints nothing.
@@ -207,17 +216,22 @@ impl TileWork for Frame<'_> {
 fn check_frames<M: Machine>(machine: &M, processors: usize, count: usize) {
     const FRAMES: usize = 6;
     let names = SCHEMES.iter().filter(|scheme| machine.is_native() || !scheme.native_only);
-    for (about, &(barrier, _)) in names.flat_map(|about| BarrierKind::ALL.iter().map(move |kind| (about, kind))) {
+    for (about, &(barrier, _)) in
+        names.flat_map(|about| BarrierKind::ALL.iter().map(move |kind| (about, kind)))
+    {
         let what = format!("{} with barrier {barrier} on {processors}", about.name);
         let given = BTreeMap::from([("barrier".to_owned(), barrier.to_owned())]);
-        let mut scheme = Scheme::new(about.name, machine, processors, given).expect("every machine here has all");
+        let mut scheme =
+            Scheme::new(about.name, machine, processors, given).expect("every machine here has all");
         for rotten in [None, (count > 0).then_some((3, count / 2)), None] {
             let done: Vec<AtomicU32> = (0..FRAMES).map(|_| AtomicU32::new(0)).collect();
             let frame = |number| Frame { number, count, done: &done, rotten };
             let frames: Vec<Frame<'_>> = (0..FRAMES).map(frame).collect();
             match (scheme.run_frames(machine, &frames), rotten) {
                 (Ok(shares), None) => assert_once(&what, FRAMES * count, shares),
-                (Err(RunError::Panicked { message, .. }), Some(_)) => assert_eq!(message, "a rotten piece", "{what}"),
+                (Err(RunError::Panicked { message, .. }), Some(_)) => {
+                    assert_eq!(message, "a rotten piece", "{what}")
+                }
                 (other, _) => panic!("{what}: {other:?}"),
             }
         }

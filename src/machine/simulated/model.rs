@@ -192,8 +192,10 @@ impl Model {
         };
         table.insert(last.to_owned(), entry);
         let model = whole_table.try_into::<Model>();
-        *self = model.map_err(|e| ModelError::Parse { file: file.clone(), message: e.to_string() })?;
-        self.check(&file)
+        let model = model.map_err(|e| ModelError::Parse { file: file.clone(), message: e.to_string() })?;
+        model.check(&file)?;
+        *self = model;
+        Ok(())
     }
 
     fn check(&self, file: &str) -> Result<(), ModelError> {
@@ -272,6 +274,7 @@ mod tests {
         assert!(model.set("cache_to_cash", 1.0).unwrap_err().to_string().contains("cache_to_cache"));
         assert!(model.set("memory", 0.5).is_err());
         assert!(model.set("store_buffer", 0.0).is_err());
+        assert!(model.store_buffer > 0, "a value that is refused is not kept");
         model.set("network.hop", 7.0).unwrap();
         assert_eq!(model.network.hop, 7);
         assert!(model.set("network.hops", 1.0).unwrap_err().to_string().contains("hop, "));

@@ -1,4 +1,5 @@
 use super::*;
+use crate::machine::Monitor;
 
 fn e4000() -> Simulated {
     Simulated::new(Model::named("e4000").unwrap())
@@ -98,4 +99,45 @@ fn numbers_of_processors_are_checked_and_large_ones_work() {
     assert_eq!(words[0].load(Ordering::Relaxed), 1024);
     let nested = machine.run(1, |_| machine.run(1, |_| ()).is_err()).unwrap();
     assert_eq!(nested, [true]);
+}
+
+#[test]
+fn a_counter_at_memory_is_not_handed_from_cache_to_cache() {
+    let time = |at_memory: u64| {
+        let mut model = Model::named("origin2000").unwrap();
+        model.network.at_memory = at_memory;
+        let machine = Simulated::new(model);
+        let word = machine.alloc(1, Layout::Padded, |_| SimulatedWord::new(0));
+        let drawn = machine.run(64, |_| word[0].fetch_add_at_memory(1, Ordering::Relaxed)).unwrap();
+        let mut drawn = drawn;
+        drawn.sort_unstable();
+        assert!(drawn.into_iter().eq(0..64));
+        machine.now()
+    };
+    assert!(time(32) < time(0), "{} {}", time(32), time(0));
+}
+
+#[test]
+fn sleepers_are_woken_one_after_the_other() {
+    let model = Model::named("origin2000").unwrap();
+    let wake = model.wake;
+    let machine = Simulated::new(model);
+    let monitor = machine.monitor().expect("its time to wake is known");
+    for _ in 0..2 {
+        let clocks = machine
+            .run(5, |cpu| {
+                cpu.charge(10_000 * cpu.id as u64);
+                monitor.pass(cpu, |come| come + 1, |_, come| come == 5);
+                engine::with(|engine| engine.clocks[cpu.id]).unwrap()
+            })
+            .unwrap();
+        // Processor 4 comes last and goes at once; 0 fell asleep first.
+        for sleeper in 0..4 {
+            let late = clocks[sleeper] - clocks[4];
+            let expected = wake * (sleeper as u64 + 1);
+            assert!(late.abs_diff(expected) < 2000, "{sleeper}: {late} cycles late, {expected} expected");
+        }
+        monitor.reset();
+    }
+    assert!(e4000().monitor().is_none(), "nobody has said how long it takes there");
 }

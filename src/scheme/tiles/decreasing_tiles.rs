@@ -58,13 +58,18 @@ impl<M: Machine> DecreasingTiles<M> {
         }
         self.counter.reset();
         let (counter, starts) = (&self.counter, self.starts.as_slice());
-        frames.run(machine, self.processors, || counter.restart(), |cpu, _| {
-            let at = counter.draw(cpu) as usize;
-            let (start, end) = (starts.get(at)?, starts.get(at + 1)?);
-            cpu.touch(start);
-            cpu.touch(end);
-            Some(*start..*end)
-        })
+        frames.run(
+            machine,
+            self.processors,
+            || counter.restart(),
+            |cpu, _| {
+                let at = counter.draw(cpu) as usize;
+                let (start, end) = (starts.get(at)?, starts.get(at + 1)?);
+                cpu.touch(start);
+                cpu.touch(end);
+                Some(*start..*end)
+            },
+        )
     }
 }
 

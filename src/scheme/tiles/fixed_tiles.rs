@@ -41,9 +41,14 @@ impl<M: Machine> FixedTiles<M> {
     ) -> Result<Vec<Share<W::Found>>, RunError> {
         self.counter.reset();
         let (counter, pieces, tile) = (&self.counter, frames.pieces(), self.tile);
-        frames.run(machine, self.processors, || counter.restart(), |cpu, _| {
-            let start = tile.saturating_mul(counter.draw(cpu) as usize);
-            (start < pieces).then(|| start..pieces.min(start + tile))
-        })
+        frames.run(
+            machine,
+            self.processors,
+            || counter.restart(),
+            |cpu, _| {
+                let start = tile.saturating_mul(counter.draw(cpu) as usize);
+                (start < pieces).then(|| start..pieces.min(start + tile))
+            },
+        )
     }
 }

@@ -33,9 +33,14 @@ impl<M: Machine> Interleaved<M> {
         frames: &Frames<'_, M, W>,
     ) -> Result<Vec<Share<W::Found>>, RunError> {
         let (pieces, tile, processors) = (frames.pieces(), self.tile, self.processors);
-        frames.run(machine, processors, || (), |cpu, turn| {
-            let start = tile * (turn * processors + cpu.id());
-            (start < pieces).then(|| start..pieces.min(start + tile))
-        })
+        frames.run(
+            machine,
+            processors,
+            || (),
+            |cpu, turn| {
+                let start = tile * (turn * processors + cpu.id());
+                (start < pieces).then(|| start..pieces.min(start + tile))
+            },
+        )
     }
 }

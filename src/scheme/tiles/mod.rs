@@ -145,9 +145,13 @@ impl<M: Machine> Scheme<M> {
     ) -> Result<Vec<Share<W::Found>>, RunError> {
         machine.check_processors(self.processors)?;
         let Some(first) = works.first() else { return Ok(Vec::new()) };
-        assert!(works.iter().all(|work| work.pieces() == first.pieces()), "frames of different size in one run");
+        assert!(
+            works.iter().all(|work| work.pieces() == first.pieces()),
+            "frames of different size in one run"
+        );
         let (kind, processors) = (self.barrier_kind, self.processors);
-        let make = || Barrier::new(machine, kind, Layout::Padded, processors).expect("the settings were checked");
+        let make =
+            || Barrier::new(machine, kind, Layout::Padded, processors).expect("the settings were checked");
         let barrier = self.barrier.get_or_insert_with(make);
         barrier.reset();
         self.scheme.run(machine, &Frames { works, barrier: Some(barrier) })

@@ -33,8 +33,11 @@ impl<M: Machine> StaticBlocks<M> {
         let (each, odd) = (frames.pieces() / self.processors, frames.pieces() % self.processors);
         // The first `odd` parts have one piece more.
         let start = |p: usize| each * p + p.min(odd);
-        frames.run(machine, self.processors, || (), |cpu, turn| {
-            (turn == 0).then(|| start(cpu.id())..start(cpu.id() + 1))
-        })
+        frames.run(
+            machine,
+            self.processors,
+            || (),
+            |cpu, turn| (turn == 0).then(|| start(cpu.id())..start(cpu.id() + 1)),
+        )
     }
 }

@@ -21,7 +21,8 @@ use crate::machine::{Machine, Processor, RunError, Shared, Word};
 use crate::scheme::{SettingError, Settings};
 use std::sync::atomic::Ordering;
 
-pub(super) const SUMMARY: &str = "a part each, the idle take half of what another has left (DASH in Parker et al. sec. 5)";
+pub(super) const SUMMARY: &str =
+    "a part each, the idle take half of what another has left (DASH in Parker et al. sec. 5)";
 pub(super) const NATIVE_ONLY: bool = false;
 pub(super) const LEARNS: bool = false;
 

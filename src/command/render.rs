@@ -6,7 +6,7 @@ use super::{print, words};
 use anyhow::{Context, Result};
 use apportion::geometry::{Camera, Lens};
 use apportion::job::trace::{
-    Counts, Eye, Film, Frame, Image, Look, Tracer, World, default_view, intersector, light_at,
+    Counts, Eye, Film, Frame, Hierarchy, Image, Look, Tracer, TriangleKind, World, default_view, light_at,
 };
 use apportion::machine::{Machine, Processor, Threads};
 use apportion::measure::MeasureError;
@@ -14,11 +14,15 @@ use apportion::record::write_whole;
 use apportion::scene::{Cache, Scene, SceneError, by_name};
 use apportion::scheme::ShareError;
 use apportion::scheme::tiles::{Scheme, TileWork};
+use apportion::structure::bvh::build::{Builder, Settings};
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+
+/// Builds the hierarchy: what is traced once need not have the best.
+const BUILDER: &str = "binned_sah";
 
 /// Renders and writes the picture, and tells what it took.
 pub(crate) fn render(words: &RenderWords) -> Result<()> {
@@ -40,15 +44,16 @@ pub(crate) fn render(words: &RenderWords) -> Result<()> {
     if scene.lights.is_empty() {
         scene.lights.push(light_at(&camera, &scene));
     }
-    let world = World::new(&scene);
-    let answers = intersector(world.items());
+    let world = World::new(scene);
+    let mut builder = Builder::new(BUILDER, &Settings::default())?;
+    let hierarchy = Hierarchy::new(world.items(), &mut builder, TriangleKind::Watertight)?;
     let look = Look { depth: words.depth, ..Look::default() };
     let mut film = Film::new(&team, width, height).context("the picture is too large")?;
     let before = team.now();
     let shares = {
-        let tracer = Tracer::new(&world, answers.as_ref(), look);
+        let tracer = Tracer::new(&world, &hierarchy, look);
         let frame = Frame::new(tracer, Eye::new(&camera, width, height), words.tile, &film);
-        let bar = Bar::of_tiles(&scene.name, frame.tiles().count());
+        let bar = Bar::of_tiles(&world.scene().name, frame.tiles().count());
         let shares = scheme.run(&team, &Shown { frame: &frame, bar: &bar }).map_err(ShareError::from);
         bar.end();
         shares?

@@ -149,3 +149,85 @@ impl Intersector for Hierarchy {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{List, World};
+    use super::*;
+    use crate::geometry::Sphere;
+    use crate::geometry::hit::Cone;
+    use crate::scene::{Shape, SplitMix64, by_name};
+    use crate::structure::bvh::build::{BUILDERS, Settings};
+    use glam::Vec3;
+
+    /// A robot among spheres and cones, and rays through all of them.
+    fn world_and_rays() -> (World, Vec<Ray>) {
+        let mut random = SplitMix64::new(9);
+        let mut scene = by_name("robot").unwrap();
+        let bounds = scene.bounds();
+        let mut point = || {
+            let share = Vec3::from_array(std::array::from_fn(|_| random.between(-0.3, 1.3) as f32));
+            bounds.min + bounds.size() * share
+        };
+        for number in 0..60 {
+            let shape = if number % 2 == 0 {
+                Shape::Sphere(Sphere { centre: point(), radius: 0.02 * number as f32 })
+            } else {
+                Shape::Cone(Cone {
+                    base: point(),
+                    base_radius: 0.1,
+                    tip: point(),
+                    tip_radius: 0.01 * number as f32,
+                })
+            };
+            scene.primitives.push(Primitive { shape, material: None });
+        }
+        let rays = (0..3000).map(|_| {
+            let (from, to) = (point(), point());
+            Ray::new(from, to - from)
+        });
+        let rays = rays.collect();
+        (World::new(scene), rays)
+    }
+
+    #[test]
+    fn every_builder_answers_the_same_and_as_the_list_does() {
+        let (world, rays) = world_and_rays();
+        let list = List(world.items());
+        for (_, kind) in TriangleKind::ALL {
+            let mut expected: Option<Vec<Option<Hit>>> = None;
+            for about in BUILDERS {
+                let mut builder = Builder::new(about.name, &Settings::default()).unwrap();
+                let hierarchy = Hierarchy::new(world.items(), &mut builder, *kind).unwrap();
+                let found: Vec<_> = rays.iter().map(|ray| hierarchy.closest(ray)).collect();
+                let mut together = vec![None; rays.len()];
+                hierarchy.closest_coherent(&rays, &mut together);
+                assert_eq!(found, together, "{}", about.name);
+                for (ray, hit) in rays.iter().zip(&found) {
+                    assert_eq!(hierarchy.occluded(ray), hit.is_some(), "{} {ray:?}", about.name);
+                }
+                assert_eq!(*expected.get_or_insert_with(|| found.clone()), found, "{}", about.name);
+            }
+            let found = expected.unwrap();
+            let hits = found.iter().flatten();
+            let primitives =
+                hits.clone().filter(|hit| hit.item as usize >= world.items().triangles.len()).count();
+            assert!(primitives > 100 && hits.count() > primitives + 100, "rays meet shapes of all kinds");
+            // The list's triangles are tested in f64: rays that pass an edge closely may differ.
+            let differs = |(ray, found): &(&Ray, &Option<Hit>)| match (found, list.closest(ray)) {
+                (Some(found), Some(hit)) => (found.t - hit.t).abs() > 1e-4 * hit.t.max(1e-2),
+                (found, hit) => found.is_some() != hit.is_some(),
+            };
+            let other = rays.iter().zip(&found).filter(differs).count();
+            assert!(other <= 3, "{other} of {} rays end elsewhere", rays.len());
+        }
+    }
+
+    #[test]
+    fn where_there_is_nothing_nothing_is_met() {
+        let mut builder = Builder::new("binned_sah", &Settings::default()).unwrap();
+        let hierarchy = Hierarchy::new(&Items::default(), &mut builder, TriangleKind::Fast).unwrap();
+        let ray = Ray::new(Vec3::ZERO, Vec3::X);
+        assert_eq!((hierarchy.closest(&ray), hierarchy.occluded(&ray)), (None, false));
+    }
+}

@@ -11,11 +11,6 @@ use super::Items;
 /// All items, gone through one by one, triangles in f64: what every hierarchy's pictures are held against.
 pub struct List<'a>(pub &'a Items);
 
-/// What answers for rays among these items.
-pub fn intersector(items: &Items) -> Box<dyn Intersector + '_> {
-    Box::new(List(items))
-}
-
 impl Intersector for List<'_> {
     fn closest(&self, ray: &Ray) -> Option<Hit> {
         // A later item must be nearer: of hits equally near the lowest number stays.

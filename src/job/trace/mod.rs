@@ -28,7 +28,7 @@ pub use film::{Film, MOST_PIXELS};
 pub use frame::{Frame, Tiles};
 pub use hierarchy::{Hierarchy, TriangleKind};
 pub use image::Image;
-pub use list::{List, intersector};
+pub use list::List;
 pub use shade::{Look, MOST_DEPTH, Tracer};
 pub use world::{Items, World};
 

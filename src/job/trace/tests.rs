@@ -61,7 +61,7 @@ fn scene(scale: f32) -> (Scene, Camera) {
 
 /// Without a scheme: pixel by pixel, ray by ray.
 fn plain(scene: &Scene, camera: &Camera, (width, height): (u32, u32), look: Look) -> (Image, Counts) {
-    let world = World::new(scene);
+    let world = World::new(scene.clone());
     let list = List(world.items());
     let tracer = Tracer::new(&world, &list, look);
     let eye = Eye::new(camera, width, height);
@@ -84,7 +84,7 @@ fn bits(image: &Image) -> Vec<[u32; 3]> {
 /// Every scheme on every count of processors gives the same bits, also in tiles that do not fit.
 fn check_all<M: Machine>(machine: &M, expected: &(Image, Counts), tile: (u32, u32)) {
     let (scene, camera) = scene(1.0);
-    let world = World::new(&scene);
+    let world = World::new(scene.clone());
     let list = List(world.items());
     let (width, height) = (expected.0.width, expected.0.height);
     for about in SCHEMES.iter().filter(|about| machine.is_native() || !about.native_only) {
@@ -176,7 +176,7 @@ fn surfaces_do_not_shadow_themselves_far_from_the_origin() {
         scene.primitives.push(Primitive { shape: Shape::Sphere(sphere), material: None });
         let eye = away + Vec3::new(110.0, 60.0, 90.0);
         scene.lights.push(PointLight { position: eye, colour: Vec3::ONE });
-        let world = World::new(&scene);
+        let world = World::new(scene.clone());
         let list = List(world.items());
         let tracer = Tracer::new(&world, &list, Look { ambient: Vec3::ZERO, ..Look::default() });
         let (mut seen, mut dark) = (0, 0);
@@ -271,7 +271,7 @@ fn light_is_wholly_mirrored_inside_beyond_the_critical_angle() {
     // From below a surface of glass whose outside is up, at 60 degrees; the critical angle is 41.8.
     let mut scene = floor(Material { highlight: Vec3::ZERO, ..Material::dielectric("g", 1.5) }, Vec3::Y).0;
     scene.lights.clear();
-    let world = World::new(&scene);
+    let world = World::new(scene.clone());
     let list = List(world.items());
     let look = Look { depth: 1, ambient: Vec3::ZERO, background: Vec3::ONE };
     let tracer = Tracer::new(&world, &list, look);
@@ -304,7 +304,7 @@ fn textures_begin_at_their_upper_left_and_repeat() {
 #[test]
 fn costs_are_measured_once_and_charged_without_tracing() {
     let (scene, camera) = scene(1.0);
-    let world = World::new(&scene);
+    let world = World::new(scene.clone());
     let list = List(world.items());
     let threads = Threads::new(1).unwrap();
     let film = Film::new(&threads, 70, 30).unwrap();
@@ -371,7 +371,7 @@ fn normals_follow_their_nodes() {
         mesh.shading.normals = Corners::of_vertices(vec![Vec3::ONE * 1e-20; 3]);
         let mesh = scene.add_mesh(mesh);
         scene.add_node(None, "n", place, Some(mesh));
-        let world = World::new(&scene);
+        let world = World::new(scene.clone());
         let [a, b, c] = world.items().triangles[0];
         let out = (a + b + c) / 3.0 * 2.0;
         let ray = crate::geometry::Ray::new(out, -out);

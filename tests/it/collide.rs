@@ -98,7 +98,9 @@ fn a_sheet_that_rolls_up_touches_itself_by_trees_fitted_anew_and_built_anew() {
             by_frame(&built, "box_tests")[0],
             "flat, both are one tree"
         );
-        assert!(of(&fitted, "box_tests") > of(&built, "box_tests"), "{volume}: its boxes have become looser");
+        let last = [&fitted, &built].map(|samples| by_frame(samples, "box_tests")[3]);
+        // Of a sheet that keeps its lengths oriented boxes turn with it; aligned ones get looser where it crosses itself.
+        assert!(volume == "obb" || last[0] > last[1], "{volume}: {last:?}");
     }
     let error = samples(&cell("cloth", "serial", "e4000", &[("job.bend", "1")])).unwrap_err().to_string();
     assert!(error.contains("a body that bends runs on threads only"), "{error}");

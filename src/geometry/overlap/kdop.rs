@@ -65,10 +65,9 @@ impl<const D: usize> Kernel<D, 2> for KDop<D> {
     #[inline(always)]
     unsafe fn separated<L: Lanes>(moved: &MovedKDop<D>, numbers: &[[L; 2]; D]) -> u64 {
         let mut apart = 0;
-        for i in 0..D {
+        for (i, &[least, greatest]) in numbers.iter().enumerate() {
             // SAFETY: the processor is the caller's.
             unsafe {
-                let [least, greatest] = numbers[i];
                 let slack = least.abs().add(greatest.abs()).mul(L::splat(ROUNDING));
                 apart |= least.sub(slack).greater(L::splat(moved.ends[1][i]));
                 apart |= L::splat(moved.ends[0][i]).greater(greatest.add(slack));

@@ -63,7 +63,8 @@ impl Kernel<5, 3> for Obb {
     #[inline(always)]
     unsafe fn separated<L: Lanes>(moved: &MovedObb, numbers: &[[L; 3]; 5]) -> u64 {
         let all = u64::MAX >> (64 - L::LEN);
-        let &[[x, y, z], ref axes @ .., half] = numbers;
+        let [[x, y, z], a, b, c, half] = *numbers;
+        let axes = [a, b, c];
         // SAFETY: the processor is the caller's.
         unsafe {
             let x = x.sub(L::splat(moved.centre[0]));

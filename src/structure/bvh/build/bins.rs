@@ -162,8 +162,8 @@ unsafe fn fill_with<L: Lanes>(items: &[Item], grating: &Grating, bins: &mut Bins
             // The outermost middle lies at the end of the last bin, not in it.
             let at = L::bins(bounds.middle(), from, scale, last);
             let load = 1 | u64::from(item.weight()) << 32;
-            for axis in 0..3 {
-                let bin = at[axis] as usize % MOST_BINS;
+            for (axis, bin) in at.into_iter().take(3).enumerate() {
+                let bin = bin as usize % MOST_BINS;
                 let into = &mut bins.boxes[axis][bin];
                 L::load(into).union(bounds).store(into);
                 bins.loads[axis][bin] += load;

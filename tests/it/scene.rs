@@ -88,6 +88,16 @@ fn generated_scenes_never_change() {
         ("shell", 0x34acd0d835864471),
         ("shell-5", 0xcde249e75b4d4876),
         ("shell-1", 0x42c60fd3d6159879),
+        ("room", 0x24097d7c36635f6f),
+        ("corner", 0xa102b96e9d7adba9),
+        ("spheres-10k", 0x73a2e85b7cd79d0e),
+        ("spheres-1m", 0x1c81f95c833c5aef),
+        ("noise-sphere", 0x6202a746a9127cbf),
+        ("cylinder-196", 0xb6cdb833835065fb),
+        ("cylinder-596", 0x4ca07a662e28c65c),
+        ("cylinder-1996", 0x84ec2639853f5117),
+        ("cylinder-3996", 0xb349b753b68ce595),
+        ("cylinder-19996", 0xb43a3072b852edac),
         ("cloth", 0x670f720ebbdfe8b2),
     ];
     assert_eq!(prints, expected);

@@ -193,7 +193,7 @@ fn normals_are_kept_where_all_three_are_given() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("model.ply");
         std::fs::write(&path, text).unwrap();
-        crate::scene::load(&path).unwrap().meshes.remove(0)
+        load(&path).unwrap().meshes.remove(0)
     };
     let mesh = read(text("nz"));
     let expected = [Vec3::new(0.5, 0.25, 1.0), Vec3::ZERO, Vec3::new(0.0, 0.0, -2.0)];

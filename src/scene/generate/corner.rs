@@ -16,7 +16,7 @@ pub(super) const CORNER: Generator = Generator {
 
 /// Balls in the heap, and edge of the box they lie in, in metres.
 const BALLS: usize = 150;
-const HEAP: f64 = 3.0;
+const HEAP: f64 = 2.4;
 
 fn generate() -> Scene {
     let mut scene = Scene::new("corner");
@@ -35,7 +35,7 @@ fn generate() -> Scene {
             let radius = random.between(0.15, 0.4);
             let [x, z] = [(); 2].map(|()| random.between(-HEAP / 2.0, HEAP / 2.0));
             let y = random.between(radius, HEAP * 0.6);
-            let centre = Vec3::new(x as f32 + 4.6, y as f32, z as f32 + 2.6);
+            let centre = Vec3::new(x as f32 + 3.0, y as f32, z as f32 + 1.5);
             Primitive {
                 shape: Shape::Sphere(Sphere { centre, radius: radius as f32 }),
                 material: Some(glass),
@@ -44,8 +44,8 @@ fn generate() -> Scene {
         .collect();
     scene.lights = vec![PointLight { position: Vec3::new(-8.0, 15.0, 10.0), colour: Vec3::splat(0.9) }];
     scene.view = Some(View {
-        eye: Vec3::new(0.0, 5.0, 12.0),
-        look: Vec3::new(0.0, 4.0, 0.0),
+        eye: Vec3::new(0.0, 4.4, 12.0),
+        look: Vec3::new(0.0, 3.4, 0.0),
         up: Vec3::Y,
         fov_y: 0.8,
     });

@@ -99,7 +99,7 @@ fn shell(room: &mut Room) {
         let corners = corners.map(|(x, y, z)| corner(x, y, z));
         room.add(parts::sheet(name, corners, [1.0, 1.0]), plaster, Vec3::ZERO);
     }
-    let place = Vec3::new(-0.6, 1.2, -HALF.z);
+    let place = Vec3::new(-0.6, 1.2, -HALF.z + 0.03);
     room.add(cuboid("frame", Vec3::new(1.3, 0.9, 0.05)), frame, place);
     let (low, high) = (Vec3::new(-0.58, 0.07, 0.03), Vec3::new(0.58, 0.83, 0.03));
     let canvas = [low, Vec3::new(high.x, low.y, low.z), high, Vec3::new(low.x, high.y, low.z)];

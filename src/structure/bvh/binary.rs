@@ -211,7 +211,8 @@ mod tests {
         bvh.validate(&boxes).expect("it is sound");
         BinaryBvh::default().validate(&[]).expect("nothing is");
         BinaryBvh::default().validate(&boxes).expect_err("items without nodes");
-        let broken: [(&str, fn(&mut BinaryBvh)); 16] = [
+        type Breaking = fn(&mut BinaryBvh);
+        let broken: [(&str, Breaking); 16] = [
             ("a child elsewhere", |bvh| bvh.nodes[0].first = 2),
             ("a child before its parent", |bvh| bvh.nodes[0].first = 0),
             ("a child that is not there", |bvh| bvh.nodes.truncate(2)),

@@ -75,7 +75,7 @@ enum Scenes {
 }
 
 /// The structures jobs go through, the one of an experiment that names none first.
-const STRUCTURES: &[&str] = &["skip_tree", "boxes", "volume_tree"];
+const STRUCTURES: &[&str] = &["skip_tree", "boxes", "volume_tree", "bvh"];
 
 impl Experiment {
     /// Reads and checks an experiment; `file` is what errors call it.

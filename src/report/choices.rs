@@ -26,7 +26,8 @@ const HIDDEN: [&str; 10] = [
 const SEED: u64 = 1;
 
 /// Settings of a job that say what is asked, as those of its scene do, and not how it is answered.
-const ASKED: [&str; 6] = ["job.gap", "job.offset", "job.place", "job.query", "job.reach", "job.scale"];
+const ASKED: [&str; 8] =
+    ["job.ask", "job.gap", "job.offset", "job.place", "job.query", "job.rays", "job.reach", "job.scale"];
 
 /// Whether cells that differ in this setting answer different questions, so that neither can take the other's place.
 fn is_asked(key: &str) -> bool {

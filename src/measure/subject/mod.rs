@@ -139,6 +139,7 @@ pub struct SubjectCache {
     boxes: HashMap<String, Rc<cull_boxes::BoxStage>>,
     pairs: HashMap<String, Rc<collide::PairStage>>,
     pictures: HashMap<String, Rc<trace::TraceStage>>,
+    hierarchies: HashMap<String, Rc<rays::Built>>,
     rays: HashMap<String, Rc<rays::RayStage>>,
     teams: HashMap<u32, Rc<Threads>>,
     models: HashMap<String, Model>,

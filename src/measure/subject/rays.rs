@@ -18,6 +18,7 @@ use crate::job::trace::{Hierarchy, List, TriangleKind, World};
 use crate::machine::{Machine, Threads};
 use crate::record::THREADS;
 use crate::record::statistics::median;
+use crate::scene::Scene;
 use crate::scheme::tiles::{Scheme, share};
 use crate::structure::bvh::build::{BUILDERS, Builder, Input, MOST_BINS, Settings};
 use crate::structure::bvh::{BinaryBvh, Intersector, RayCounts};
@@ -27,7 +28,7 @@ use std::rc::Rc;
 const CHECKED: usize = 100;
 
 /// Builds of which the median is told.
-const BUILDS: usize = 5;
+const BUILDS: usize = 3;
 
 struct Asked {
     kind: RayKind,
@@ -61,13 +62,21 @@ impl Asked {
     }
 }
 
+/// A hierarchy over a scene.
+pub(super) struct Built {
+    world: World,
+    hierarchy: Hierarchy,
+    /// What there is to say of it.
+    told: Vec<Sample>,
+}
+
 /// A hierarchy and the rays that go through it.
 pub(super) struct RayStage {
-    hierarchy: Hierarchy,
+    built: Rc<Built>,
     rays: Vec<Ray>,
     /// What they come to on one processor.
     met: Met,
-    /// What is known of the hierarchy and of what the rays took.
+    /// What is known of the hierarchy, and what the rays took.
     told: Vec<Sample>,
 }
 
@@ -91,7 +100,18 @@ pub(super) fn open(
     let stage = match cache.rays.get(&key) {
         Some(stage) => stage.clone(),
         None => {
-            let stage = Rc::new(RayStage::new(&asked, cell, options, &*cache.team(1)?)?);
+            let one = cache.team(1)?;
+            let of_built = format!("{} {:?} {:?}", asked.builder, asked.settings, asked.triangle);
+            let of_built = format!("{} {of_built}", stage_key(cell, options));
+            let built = match cache.hierarchies.get(&of_built) {
+                Some(built) => built.clone(),
+                None => {
+                    let built = Rc::new(Built::new(&asked, staging::scene(cell)?, &one)?);
+                    cache.hierarchies.insert(of_built, built.clone());
+                    built
+                }
+            };
+            let stage = Rc::new(RayStage::new(built, &asked, options.seed, &one)?);
             cache.rays.insert(key, stage.clone());
             stage
         }
@@ -101,9 +121,9 @@ pub(super) fn open(
     Ok(Box::new(RaySubject { team, scheme, stage, ask: asked.ask, passes: options.frames as usize }))
 }
 
-impl RayStage {
-    fn new(asked: &Asked, cell: &Cell, options: &Options, one: &Threads) -> Result<Self, MeasureError> {
-        let world = World::new(staging::scene(cell)?);
+impl Built {
+    fn new(asked: &Asked, scene: Scene, one: &Threads) -> Result<Self, MeasureError> {
+        let world = World::new(scene);
         let items = world.items();
         let triangles = items.triangles.len();
         let mut builder = Builder::new(asked.builder, &asked.settings).map_err(failed)?;
@@ -122,35 +142,43 @@ impl RayStage {
             timed(&mut collapses, before);
         }
         let hierarchy = hierarchy.expect("it was built at least once");
-        let rays = ray_set(asked.kind, world.scene(), &hierarchy, asked.count, options.seed)
-            .filter(|rays| !rays.is_empty())
-            .ok_or_else(|| {
-                MeasureError::Failed(format!("scene `{}`: there is nothing to aim at", cell.scene))
-            })?;
-        check(&hierarchy, &List(items), &rays)?;
-        let mut counts = RayCounts::default();
-        for ray in &rays {
-            hierarchy.triangle_counted(ray, &mut counts);
-        }
-        let work = RayWork { intersector: &hierarchy, rays: &rays, asked: asked.ask };
-        let mut met = Met::default();
-        share("serial", one, 1, &work).map_err(failed)?.iter().for_each(|share| met += share.found);
-        let a_ray = |count: u64| count as f64 / rays.len() as f64;
         let (build, collapse) = (median(&builds).unwrap_or_default(), median(&collapses).unwrap_or_default());
-        let mut told = vec![
+        let told = vec![
             Sample::of_path("structure_time", build),
             Sample::of_path("structure_rate", triangles as f64 * 1e3 / build.max(1.0)),
             Sample::of_path("collapse_time", collapse),
             Sample::of_path("structure_bytes", hierarchy.bytes() as f64),
             Sample::of_path("sah_cost", binary.cost(1.0, 1.0)),
-            Sample::of_path("nodes_per_ray", a_ray(counts.nodes)),
-            Sample::of_path("blocks_per_ray", a_ray(counts.blocks)),
-            Sample::of_path("rays_hit", 100.0 * a_ray(met.hits)),
         ];
+        Ok(Self { world, hierarchy, told })
+    }
+}
+
+impl RayStage {
+    fn new(built: Rc<Built>, asked: &Asked, seed: u64, one: &Threads) -> Result<Self, MeasureError> {
+        let (scene, hierarchy) = (built.world.scene(), &built.hierarchy);
+        let rays = ray_set(asked.kind, scene, hierarchy, asked.count, seed)
+            .filter(|rays| !rays.is_empty())
+            .ok_or_else(|| {
+            MeasureError::Failed(format!("scene `{}`: there is nothing to aim at", scene.name))
+        })?;
+        check(hierarchy, &List(built.world.items()), &rays)?;
+        let mut counts = RayCounts::default();
+        for ray in &rays {
+            hierarchy.triangle_counted(ray, &mut counts);
+        }
+        let work = RayWork { intersector: hierarchy, rays: &rays, asked: asked.ask };
+        let mut met = Met::default();
+        share("serial", one, 1, &work).map_err(failed)?.iter().for_each(|share| met += share.found);
+        let a_ray = |count: u64| count as f64 / rays.len() as f64;
+        let mut told = built.told.clone();
+        told.push(Sample::of_path("nodes_per_ray", a_ray(counts.nodes)));
+        told.push(Sample::of_path("blocks_per_ray", a_ray(counts.blocks)));
+        told.push(Sample::of_path("rays_hit", 100.0 * a_ray(met.hits)));
         if asked.kind == RayKind::Edge {
             told.push(Sample::of_path("rays_through", rays.len() as f64 - met.hits as f64));
         }
-        Ok(Self { hierarchy, rays, met, told })
+        Ok(Self { built, rays, met, told })
     }
 }
 
@@ -184,8 +212,8 @@ struct RaySubject {
 impl RaySubject {
     /// Goes through the passes, with a trace of each or without, until the one looked for is found.
     fn go(&mut self, mut trace: Option<&mut Nearest>) -> Result<Vec<Sample>, MeasureError> {
-        let RayStage { hierarchy, rays, met: expected, told } = &*self.stage;
-        let work = RayWork { intersector: hierarchy, rays, asked: self.ask };
+        let RayStage { built, rays, met: expected, told } = &*self.stage;
+        let work = RayWork { intersector: &built.hierarchy, rays, asked: self.ask };
         let mut samples = Vec::new();
         let (mut all, mut imbalance, mut used) = (0.0, 0.0, 0);
         for pass in 0..self.passes {

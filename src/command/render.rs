@@ -7,6 +7,7 @@ use anyhow::{Context, Result};
 use apportion::geometry::{Camera, Lens};
 use apportion::job::trace::{
     Counts, Eye, Film, Frame, Hierarchy, Image, Look, Tracer, TriangleKind, World, default_view, light_at,
+    view_within,
 };
 use apportion::machine::{Machine, Processor, Threads};
 use apportion::measure::MeasureError;
@@ -33,20 +34,25 @@ pub(crate) fn render(words: &RenderWords) -> Result<()> {
     let processors = team.most_processors();
     let scheme = Scheme::new(&words.scheme, &team, processors, BTreeMap::new());
     let mut scheme = scheme.map_err(|error| MeasureError::Words(error.to_string()))?;
-    let mut scene = read(&words.scene)?;
+    let scene = read(&words.scene)?;
     scene.warnings.iter().for_each(|warning| print::note(warning));
     let (width, height) = words.size;
     let aspect = width as f32 / height as f32;
-    let camera = match &words.camera {
-        Some(camera) => looking(camera, &scene, aspect)?,
-        None => default_view(&scene, aspect).context("there is nothing to see in it; give --camera")?,
-    };
-    if scene.lights.is_empty() {
-        scene.lights.push(light_at(&camera, &scene));
-    }
-    let world = World::new(scene);
+    let mut world = World::new(scene);
     let mut builder = Builder::new(BUILDER, &Settings::default())?;
     let hierarchy = Hierarchy::new(world.items(), &mut builder, TriangleKind::Watertight)?;
+    let scene = world.scene();
+    let within = || scene.view.is_none().then(|| view_within(&world, &hierarchy, aspect)).flatten();
+    let camera = match &words.camera {
+        Some(camera) => looking(camera, scene, aspect)?,
+        None => within()
+            .or_else(|| default_view(scene, aspect))
+            .context("there is nothing to see in it; give --camera")?,
+    };
+    if scene.lights.is_empty() {
+        let light = light_at(&camera, scene);
+        world.add_light(light);
+    }
     let look = Look { depth: words.depth, ..Look::default() };
     let mut film = Film::new(&team, width, height).context("the picture is too large")?;
     let before = team.now();

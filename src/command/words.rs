@@ -46,8 +46,8 @@ pub(crate) enum Action {
     Compare(CompareWords),
     /// Trace a picture of a scene.
     ///
-    /// Without --camera it is seen from its own view, or from above its right front corner; where it has no lights, one
-    /// is put beside the eye.
+    /// Without --camera it is seen from its own view; if it has none, from within where walls close in on its middle, as a
+    /// building's do, and from above its right front corner elsewhere. Where it has no lights, one is put beside the eye.
     #[command(after_help = RENDER_EXAMPLES)]
     Render(RenderWords),
     /// Tell what a scene holds.

@@ -1,9 +1,12 @@
 //! Rays from a camera.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use crate::geometry::{Camera, Lens, Ray};
 use crate::scene::{PointLight, Scene};
+use crate::structure::bvh::Intersector;
+
+use super::World;
 
 /// A camera before a picture of so many pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,6 +83,43 @@ pub fn default_view(scene: &Scene, aspect: f32) -> Option<Camera> {
         let distance = corners.fold(radius * 0.1, f32::max) * 1.05;
         make(centre + toward * distance, centre, Vec3::Y, std::f32::consts::FRAC_PI_4)
     })
+}
+
+/// Directions in which one looks about to see where one is.
+const ABOUT: usize = 128;
+/// Of those, how many must end at a surface's front for one to be within a room.
+const WALLS: usize = ABOUT * 3 / 5;
+/// How far back one steps to see more of a room, as a share of the way to the wall.
+const BACK: f32 = 0.8;
+
+/// A camera within a scene that closes in on its middle as the walls of a building do, their fronts turned to it: it
+/// looks the longest way there is along the floor. None where the middle is in the open, or within a body, whose
+/// surface shows it its back.
+pub fn view_within(world: &World, intersector: &dyn Intersector, aspect: f32) -> Option<Camera> {
+    let bounds = world.scene().bounds();
+    let (middle, size) = (bounds.centre(), bounds.half_diagonal());
+    let triangles = &world.items().triangles;
+    let is_front = |direction: Vec3| {
+        let hit = intersector.closest(&Ray::new(middle, direction));
+        let corners = hit.and_then(|hit| triangles.get(hit.item as usize));
+        corners.is_some_and(|[a, b, c]| (*b - *a).cross(*c - *a).dot(direction) < 0.0)
+    };
+    // Points of a sphere, evenly spread (Fibonacci's spiral).
+    let about = (0..ABOUT).map(|step| {
+        let y = 1.0 - (2 * step + 1) as f32 / ABOUT as f32;
+        let (sine, cosine) = (step as f32 * 2.399_963_2).sin_cos();
+        Vec3::new(cosine, 0.0, sine) * (1.0 - y * y).sqrt() + Vec3::Y * y
+    });
+    if about.filter(|direction| is_front(*direction)).count() < WALLS {
+        return None;
+    }
+    let free = |direction: Vec3| intersector.closest(&Ray::new(middle, direction)).map_or(0.0, |hit| hit.t);
+    let ways = (0..64).map(|step| Vec2::from_angle(step as f32 * std::f32::consts::TAU / 64.0));
+    let ways = ways.map(|way| Vec3::new(way.x, 0.0, way.y));
+    let way = ways.max_by(|a, b| (free(*a) + free(-*a)).total_cmp(&(free(*b) + free(-*b))))?;
+    let eye = middle - way * (free(-way) * BACK);
+    let lens = Lens::Symmetric { fov_y: 1.0, aspect };
+    Camera::look_at(eye, middle + way * size, Vec3::Y, lens, size * 1e-4, size * 2.0).ok()
 }
 
 /// A light for a scene that has none: above the eye to its left, far enough off that surfaces show their shape; close by

@@ -23,7 +23,7 @@ mod world;
 
 pub use costs::{Costed, TileCosts};
 pub use counts::Counts;
-pub use eye::{Eye, default_view, light_at};
+pub use eye::{Eye, default_view, light_at, view_within};
 pub use film::{Film, MOST_PIXELS};
 pub use frame::{Frame, Tiles};
 pub use hierarchy::{Hierarchy, TriangleKind};

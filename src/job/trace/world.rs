@@ -3,7 +3,7 @@
 use glam::{Mat3, Vec3};
 
 use crate::geometry::Aabb;
-use crate::scene::{Primitive, Scene};
+use crate::scene::{PointLight, Primitive, Scene};
 
 /// The shapes of a scene in world space. Item `i` is triangle `i`, or, after the last triangle, primitive
 /// `i - triangles.len()`.
@@ -80,6 +80,11 @@ impl World {
     /// The scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
+    }
+
+    /// Adds a light.
+    pub fn add_light(&mut self, light: PointLight) {
+        self.scene.lights.push(light);
     }
 
     /// What rays can meet.

@@ -7,7 +7,7 @@
 
 use super::settings::{JobSettings, of_scheme};
 use super::{
-    Cell, FrameTrace, MeasureError, Nearest, Options, Sample, Subject, SubjectCache, TraversalShare, failed,
+    Cell, MeasureError, Nearest, Options, Sample, Subject, SubjectCache, TraversalShare, Walk, failed,
     load_imbalance, simulated,
 };
 use crate::geometry::{BoxTest, Camera, Frustum, Kernel};
@@ -158,8 +158,9 @@ impl<H: Borrow<M>, M: Machine> BoxSubject<H, M> {
         let pieces = shares.map_err(failed)?.iter().map(|share| share.visited).collect();
         Ok((ticks as f64 / machine.ticks_per_nanosecond(), pieces))
     }
+}
 
-    /// Goes through the frames, with a trace of each or without, until the one looked for is found.
+impl<H: Borrow<M>, M: Machine> Walk for BoxSubject<H, M> {
     fn go(&mut self, mut trace: Option<&mut Nearest>) -> Result<Vec<Sample>, MeasureError> {
         let mut samples = Vec::new();
         let mut traversal = TraversalShare::default();
@@ -205,17 +206,5 @@ impl<H: Borrow<M>, M: Machine> BoxSubject<H, M> {
         samples.push(Sample::of_path("processors_used", used as f64 / frames));
         samples.extend(traversal.sample());
         Ok(samples)
-    }
-}
-
-impl<H: Borrow<M>, M: Machine> Subject for BoxSubject<H, M> {
-    fn sample(&mut self, _repeat: u32) -> Result<Vec<Sample>, MeasureError> {
-        self.go(None)
-    }
-
-    fn trace(&mut self, time: f64) -> Result<Option<FrameTrace>, MeasureError> {
-        let mut nearest = Nearest::new(time);
-        self.go(Some(&mut nearest))?;
-        Ok(nearest.found())
     }
 }

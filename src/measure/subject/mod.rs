@@ -69,6 +69,24 @@ pub trait Subject {
     }
 }
 
+/// A subject that goes through its frames in the same way whether they are traced or not.
+trait Walk {
+    /// Goes through the frames, with a trace of each or without, until the one looked for is found.
+    fn go(&mut self, trace: Option<&mut Nearest>) -> Result<Vec<Sample>, MeasureError>;
+}
+
+impl<W: Walk> Subject for W {
+    fn sample(&mut self, _repeat: u32) -> Result<Vec<Sample>, MeasureError> {
+        self.go(None)
+    }
+
+    fn trace(&mut self, time: f64) -> Result<Option<FrameTrace>, MeasureError> {
+        let mut nearest = Nearest::new(time);
+        self.go(Some(&mut nearest))?;
+        Ok(nearest.found())
+    }
+}
+
 /// The names there are: what experiments and the command line may ask for.
 #[derive(Clone, Debug)]
 pub struct Known {

@@ -9,7 +9,7 @@
 
 use super::settings::{JobSettings, of_scheme};
 use super::{
-    Cell, FrameTrace, MeasureError, Nearest, Options, Sample, Subject, SubjectCache, failed, load_imbalance,
+    Cell, MeasureError, Nearest, Options, Sample, Subject, SubjectCache, Walk, failed, load_imbalance,
     stage_key, staging,
 };
 use crate::geometry::Ray;
@@ -209,8 +209,7 @@ struct RaySubject {
     passes: usize,
 }
 
-impl RaySubject {
-    /// Goes through the passes, with a trace of each or without, until the one looked for is found.
+impl Walk for RaySubject {
     fn go(&mut self, mut trace: Option<&mut Nearest>) -> Result<Vec<Sample>, MeasureError> {
         let RayStage { built, rays, met: expected, told } = &*self.stage;
         let work = RayWork { intersector: &built.hierarchy, rays, asked: self.ask };
@@ -248,17 +247,5 @@ impl RaySubject {
         samples.push(Sample::of_path("load_imbalance", imbalance / passes));
         samples.push(Sample::of_path("processors_used", used as f64 / passes));
         Ok(samples)
-    }
-}
-
-impl Subject for RaySubject {
-    fn sample(&mut self, _repeat: u32) -> Result<Vec<Sample>, MeasureError> {
-        self.go(None)
-    }
-
-    fn trace(&mut self, time: f64) -> Result<Option<FrameTrace>, MeasureError> {
-        let mut nearest = Nearest::new(time);
-        self.go(Some(&mut nearest))?;
-        Ok(nearest.found())
     }
 }

@@ -7,7 +7,7 @@
 
 use super::settings::{JobSettings, of_scheme};
 use super::{
-    Cell, FrameTrace, MeasureError, Nearest, Options, Sample, Subject, SubjectCache, TraversalShare, failed,
+    Cell, MeasureError, Nearest, Options, Sample, Subject, SubjectCache, TraversalShare, Walk, failed,
     load_imbalance, simulated,
 };
 use crate::job::synthetic_tiles::{Cost, SyntheticTiles};
@@ -70,8 +70,9 @@ impl<H: Borrow<M>, M: Machine> TilesSubject<H, M> {
         let (frames_a_run, runs) = (asked.frames_a_run, options.frames as usize);
         Ok(TilesSubject { machine, work, scheme, frames_a_run, runs })
     }
+}
 
-    /// Goes through the runs, with a trace of each or without, until the one looked for is found.
+impl<H: Borrow<M>, M: Machine> Walk for TilesSubject<H, M> {
     fn go(&mut self, mut trace: Option<&mut Nearest>) -> Result<Vec<Sample>, MeasureError> {
         let machine = self.machine.borrow();
         let works = vec![&self.work; self.frames_a_run];
@@ -112,17 +113,5 @@ impl<H: Borrow<M>, M: Machine> TilesSubject<H, M> {
         samples.push(Sample::of_path("processors_used", used as f64 / runs));
         samples.extend(traversal.sample());
         Ok(samples)
-    }
-}
-
-impl<H: Borrow<M>, M: Machine> Subject for TilesSubject<H, M> {
-    fn sample(&mut self, _repeat: u32) -> Result<Vec<Sample>, MeasureError> {
-        self.go(None)
-    }
-
-    fn trace(&mut self, time: f64) -> Result<Option<FrameTrace>, MeasureError> {
-        let mut nearest = Nearest::new(time);
-        self.go(Some(&mut nearest))?;
-        Ok(nearest.found())
     }
 }

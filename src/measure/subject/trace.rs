@@ -10,7 +10,7 @@
 
 use super::settings::{JobSettings, of_scheme};
 use super::{
-    Cell, FrameTrace, MeasureError, Nearest, Options, Sample, Subject, SubjectCache, TraversalShare, failed,
+    Cell, MeasureError, Nearest, Options, Sample, Subject, SubjectCache, TraversalShare, Walk, failed,
     load_imbalance, simulated, stage_key, staging,
 };
 use crate::job::trace::{
@@ -256,8 +256,13 @@ impl<H: Borrow<M>, M: Machine> PictureSubject<H, M> {
         }
         Ok(())
     }
+}
 
-    /// Goes through the frames, with a trace of each or without, until the one looked for is found.
+fn visited<F>(shares: &[Share<F>]) -> Vec<u64> {
+    shares.iter().map(|share| share.visited).collect()
+}
+
+impl<H: Borrow<M>, M: Machine> Walk for PictureSubject<H, M> {
     fn go(&mut self, mut trace: Option<&mut Nearest>) -> Result<Vec<Sample>, MeasureError> {
         let mut samples = Vec::new();
         let mut traversal = TraversalShare::default();
@@ -300,21 +305,5 @@ impl<H: Borrow<M>, M: Machine> PictureSubject<H, M> {
         samples.push(Sample::of_path("processors_used", used as f64 / frames));
         samples.extend(traversal.sample());
         Ok(samples)
-    }
-}
-
-fn visited<F>(shares: &[Share<F>]) -> Vec<u64> {
-    shares.iter().map(|share| share.visited).collect()
-}
-
-impl<H: Borrow<M>, M: Machine> Subject for PictureSubject<H, M> {
-    fn sample(&mut self, _repeat: u32) -> Result<Vec<Sample>, MeasureError> {
-        self.go(None)
-    }
-
-    fn trace(&mut self, time: f64) -> Result<Option<FrameTrace>, MeasureError> {
-        let mut nearest = Nearest::new(time);
-        self.go(Some(&mut nearest))?;
-        Ok(nearest.found())
     }
 }

@@ -5,7 +5,7 @@
 
 use super::settings::{JobSettings, of_scheme};
 use super::{
-    Cell, FrameTrace, MeasureError, Nearest, Options, Sample, Subject, SubjectCache, TraversalShare, failed,
+    Cell, MeasureError, Nearest, Options, Sample, Subject, SubjectCache, TraversalShare, Walk, failed,
     load_imbalance, simulated,
 };
 use crate::job::synthetic::Synthetic;
@@ -68,20 +68,7 @@ impl<H: Borrow<M>, M: Machine> TreeSubject<H, M> {
     }
 }
 
-impl<H: Borrow<M>, M: Machine> Subject for TreeSubject<H, M> {
-    fn sample(&mut self, _repeat: u32) -> Result<Vec<Sample>, MeasureError> {
-        self.go(None)
-    }
-
-    fn trace(&mut self, time: f64) -> Result<Option<FrameTrace>, MeasureError> {
-        let mut nearest = Nearest::new(time);
-        self.go(Some(&mut nearest))?;
-        Ok(nearest.found())
-    }
-}
-
-impl<H: Borrow<M>, M: Machine> TreeSubject<H, M> {
-    /// Goes through the path, with a trace of each frame or without, until the frame looked for is found.
+impl<H: Borrow<M>, M: Machine> Walk for TreeSubject<H, M> {
     fn go(&mut self, mut trace: Option<&mut Nearest>) -> Result<Vec<Sample>, MeasureError> {
         let machine = self.machine.borrow();
         let mut samples = Vec::new();

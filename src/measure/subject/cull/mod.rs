@@ -12,8 +12,8 @@ mod truth;
 
 use super::settings::{JobSettings, of_scheme};
 use super::{
-    Cell, FrameTrace, MeasureError, Nearest, Options, Sample, Stage, Subject, SubjectCache, TraversalShare,
-    failed, load_imbalance, simulated,
+    Cell, MeasureError, Nearest, Options, Sample, Stage, Subject, SubjectCache, TraversalShare, Walk, failed,
+    load_imbalance, simulated,
 };
 use crate::geometry::Frustum;
 use crate::geometry::culling::{Octant, Space, Steps};
@@ -159,20 +159,7 @@ impl<M: Machine> Baseline<M> {
     }
 }
 
-impl<H: Borrow<M>, M: Machine> Subject for CullSubject<H, M> {
-    fn sample(&mut self, _repeat: u32) -> Result<Vec<Sample>, MeasureError> {
-        self.go(None)
-    }
-
-    fn trace(&mut self, time: f64) -> Result<Option<FrameTrace>, MeasureError> {
-        let mut nearest = Nearest::new(time);
-        self.go(Some(&mut nearest))?;
-        Ok(nearest.found())
-    }
-}
-
-impl<H: Borrow<M>, M: Machine> CullSubject<H, M> {
-    /// Goes through the path, with a trace of each frame or without, until the frame looked for is found.
+impl<H: Borrow<M>, M: Machine> Walk for CullSubject<H, M> {
     fn go(&mut self, mut trace: Option<&mut Nearest>) -> Result<Vec<Sample>, MeasureError> {
         let machine = self.machine.borrow();
         let mut samples = Vec::new();

@@ -133,3 +133,32 @@ pub fn light_at(camera: &Camera, scene: &Scene) -> PointLight {
         colour: Vec3::splat(0.9),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Hierarchy, TriangleKind};
+    use super::*;
+    use crate::scene::by_name;
+    use crate::structure::bvh::build::{Builder, Settings};
+
+    #[test]
+    fn one_looks_about_within_walls_and_not_within_a_body() {
+        let shell = by_name("shell").unwrap();
+        let seen_within = |scene: Scene| {
+            let world = World::new(scene);
+            let mut builder = Builder::new("binned_sah", &Settings::default()).unwrap();
+            let hierarchy = Hierarchy::new(world.items(), &mut builder, TriangleKind::Watertight).unwrap();
+            view_within(&world, &hierarchy, 1.0)
+        };
+        assert!(seen_within(shell.clone()).is_none(), "a body shows its back");
+        let mut room = shell;
+        for mesh in &mut room.meshes {
+            mesh.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+        }
+        let (bounds, camera) = (room.bounds(), seen_within(room).expect("walls all round"));
+        assert!(camera.eye.cmpgt(bounds.min).all() && camera.eye.cmplt(bounds.max).all());
+        assert!((bounds.centre() - camera.eye).dot(camera.forward) > 0.0, "it looks across the middle");
+        assert!(seen_within(by_name("robot").unwrap()).is_none(), "its middle is in the open");
+        assert!(seen_within(Scene::new("nothing")).is_none());
+    }
+}

@@ -13,7 +13,6 @@ use crate::scene::{
 };
 use crate::scheme::tiles::{SCHEMES, Scheme, share};
 use crate::structure::bvh::Intersector;
-use crate::structure::bvh::build::{Builder, Settings};
 
 const LENS: Lens = Lens::Symmetric { fov_y: 0.8, aspect: 1.25 };
 
@@ -391,25 +390,4 @@ fn normals_follow_their_nodes() {
         assert!(surface.smooth.distance(side) < 1e-4, "{} and {side}", surface.smooth);
         assert_eq!(surface.material, &Material::default());
     }
-}
-
-#[test]
-fn one_looks_about_within_walls_and_not_within_a_body() {
-    let shell = by_name("shell").unwrap();
-    let seen_within = |scene: Scene| {
-        let world = World::new(scene);
-        let mut builder = Builder::new("binned_sah", &Settings::default()).unwrap();
-        let hierarchy = Hierarchy::new(world.items(), &mut builder, TriangleKind::Watertight).unwrap();
-        view_within(&world, &hierarchy, 1.0)
-    };
-    assert!(seen_within(shell.clone()).is_none(), "a body shows its back");
-    let mut room = shell;
-    for mesh in &mut room.meshes {
-        mesh.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
-    }
-    let (bounds, camera) = (room.bounds(), seen_within(room).expect("walls all round"));
-    assert!(camera.eye.cmpgt(bounds.min).all() && camera.eye.cmplt(bounds.max).all());
-    assert!((bounds.centre() - camera.eye).dot(camera.forward) > 0.0, "it looks across the middle");
-    assert!(seen_within(by_name("robot").unwrap()).is_none(), "its middle is in the open");
-    assert!(seen_within(Scene::new("nothing")).is_none());
 }

@@ -210,8 +210,8 @@ mod tests {
             }
             let found = expected.unwrap();
             let triangles = world.items().triangles.len();
-            let (met, others): (Vec<_>, Vec<_>) =
-                found.iter().flatten().partition(|hit| (hit.item as usize) < triangles);
+            let is_triangle = |hit: &&Hit| (hit.item as usize) < triangles;
+            let (met, others): (Vec<&Hit>, Vec<&Hit>) = found.iter().flatten().partition(is_triangle);
             assert!(
                 met.len() > 20 && others.len() > 20,
                 "{} triangles, {} others are met",

@@ -34,6 +34,9 @@ fn medians<'a>(rows: &'a [Row], metric: &str) -> BTreeMap<Key<'a>, f64> {
     values.into_iter().filter_map(|(key, values)| Some((key, median(&values)?))).collect()
 }
 
+/// What a panel's cells have in common: machine, job, scene, and what is asked about it with the answer.
+type Place<'a> = (&'a str, &'a str, &'a str, (String, String));
+
 /// One alternative.
 struct Choice<'a> {
     scheme: &'a str,
@@ -55,7 +58,7 @@ fn figure(material: &Material<'_>, kind: AccuracyKind) -> Option<Figure> {
     let alone = rows.iter().all(|row| row.machine == rows[0].machine);
     let name: Option<&dyn Fn(&str) -> String> = if material.choices.is_empty() { None } else { Some(&label) };
     for metric in METRICS.iter().filter(|metric| metric.accuracy == Some(kind)) {
-        let mut places: BTreeMap<(&str, &str, &str, (String, String)), Vec<Choice<'_>>> = BTreeMap::new();
+        let mut places: BTreeMap<Place<'_>, Vec<Choice<'_>>> = BTreeMap::new();
         for (key, &given_up) in &medians(rows, metric.name) {
             let Some(&time) = times.get(key) else { continue };
             let &(machine, job, scene, scheme, settings, processors) = key;

@@ -2,7 +2,7 @@
 //!
 //! A panel holds cells that are alternatives: one machine, job, scene and question about it. What is given up in
 //! *structure* is more work for the same answer, so that cells stand together only where their answer, the nodes found
-//! visible or the pixels covered, is the same; where rows do not tell the answer, only those that share their common
+//! visible, the pixels covered or the rays that hit, is the same; where rows do not tell the answer, only those that share their common
 //! settings do. Where what is counted is by how much an answer is too large, all of them stand together. Where no cell
 //! gives up more than another there is no choice to show, and nothing is drawn.
 
@@ -51,6 +51,7 @@ fn figure(material: &Material<'_>, kind: AccuracyKind) -> Option<Figure> {
     let times = medians(rows, "total_time");
     let mut answers = medians(rows, "nodes_visible");
     answers.extend(medians(rows, "pixels_covered"));
+    answers.extend(medians(rows, "rays_hit"));
     let mut entries: Vec<(String, Entry)> = Vec::new();
     let mut panels = Vec::new();
     // Where nothing is shared out, settings have looks of their own instead of the one scheme.

@@ -2,9 +2,9 @@
 //!
 //! A panel holds cells that are alternatives: one machine, job, scene and question about it. What is given up in
 //! *structure* is more work for the same answer, so that cells stand together only where their answer, the nodes found
-//! visible, the pixels covered or the rays that hit, is the same; where rows do not tell the answer, only those that share their common
-//! settings do. Where what is counted is by how much an answer is too large, all of them stand together. Where no cell
-//! gives up more than another there is no choice to show, and nothing is drawn.
+//! visible, the pixels covered or the rays that hit, is the same; where rows do not tell the answer, only those that
+//! share their common settings do. Where what is counted is by how much an answer is too large, all of them stand
+//! together. Where no cell gives up more than another there is no choice to show, and nothing is drawn.
 
 use super::time::unit;
 use super::words::{bare, machine, number};

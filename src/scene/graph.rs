@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Vec3};
 
-use super::{Material, PointLight, Primitive, Shading, Texture, View};
+use super::{Animation, Material, PointLight, Primitive, Shading, Texture, View};
 use crate::geometry::Aabb;
 
 /// A scene: a forest of nodes that place meshes in the world.
@@ -26,6 +26,8 @@ pub struct Scene {
     pub lights: Vec<PointLight>,
     /// Where it wants to be looked at from.
     pub view: Option<View>,
+    /// What moves in it, and when.
+    pub animation: Animation,
     /// What a file asked for and could not be had, such as the picture of a texture: the scene is whole without.
     pub warnings: Vec<String>,
 }

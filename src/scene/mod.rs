@@ -3,6 +3,7 @@
 //! Lengths are in metres; y is up in generated scenes. A new file format is one file in `formats/` and
 //! one line in its list; a new generator one file in `generate/` and one line in its list.
 
+mod animation;
 mod cache;
 mod describe;
 mod error;
@@ -19,6 +20,7 @@ mod shading;
 mod source;
 mod validate;
 
+pub use animation::{Animation, Bend, BendKey, Curve, HermiteKey, Motion, SplineKey};
 pub use cache::{Cache, Origin};
 pub use describe::{Description, describe};
 pub use error::SceneError;

@@ -10,8 +10,8 @@ mod contenders;
 mod kinds;
 
 use crate::clock::{self, Run, median};
+use apportion::job::trace::World;
 use apportion::scene;
-use apportion::structure::volume_tree::in_world;
 use contenders::Built;
 use std::hint::black_box;
 use std::path::Path;
@@ -21,10 +21,10 @@ pub(crate) fn study(file: Option<&Path>) {
         Some(file) => scene::load(file).unwrap_or_else(|error| panic!("{error}")),
         None => scene::by_name("shell").expect("a generator of that name"),
     };
-    let (positions, corners) = in_world(&loaded);
-    let triangles: Vec<_> = corners.iter().map(|three| three.map(|at| positions[at as usize])).collect();
-    let built = Built::over(&triangles);
-    for (kind, rays) in kinds::all(&triangles, &built.watertight) {
+    let world = World::new(loaded);
+    let triangles = &world.items().triangles;
+    let built = Built::over(triangles);
+    for (kind, rays) in kinds::all(&world, &built.watertight) {
         let mut contenders = contenders::all(&built, &rays);
         let hits: Vec<usize> = contenders.iter_mut().map(|one| (one.run)()).collect();
         let most = rays.len() / 1000;
@@ -36,7 +36,7 @@ pub(crate) fn study(file: Option<&Path>) {
             contenders.iter_mut().map(|one| Box::new(move || pass(one)) as Run<'_>).collect();
         let times = clock::rounds(&mut runs);
         drop(runs);
-        println!("\n{}, {} triangles: {} rays, {kind}", loaded.name, triangles.len(), rays.len());
+        println!("\n{}, {} triangles: {} rays, {kind}", world.scene().name, triangles.len(), rays.len());
         println!("{:40} median million rays/s; times the first; hits", "");
         for ((one, own), hits) in contenders.iter().zip(&times).zip(hits) {
             let millions = rays.len() as f64 * 1e3 / median(own.iter().copied());

@@ -1,5 +1,6 @@
 //! How work is shared out, by the shape of the work. A scheme knows nothing of boxes or rays.
 
+pub mod frames;
 mod settings;
 pub mod tiles;
 pub mod tree;

@@ -92,7 +92,8 @@ impl Scene {
 type Fault = (String, &'static str);
 
 impl Motion {
-    fn check(&self) -> Result<(), Fault> {
+    /// Tells what is wrong with its curves.
+    pub(in crate::scene) fn check(&self) -> Result<(), Fault> {
         for curve in [&self.translation, &self.scale].into_iter().flatten() {
             check_curve(curve, |value: &Vec3| value.is_finite(), |value| value.is_finite())?;
         }

@@ -1,7 +1,8 @@
 //! glTF 2.0, as text or binary: the node hierarchy and the triangles; nodes that share a mesh go on
 //! sharing it. Of a mesh's primitives those made of triangles (lists, strips, fans) become one mesh;
 //! points and lines have no surface and are left out. Normals, the first texture coordinates and
-//! materials are read; skins, morphs and animation are not. Quantised, sparse or compressed vertices are refused.
+//! materials are read, and how nodes move (`gltf_motion.rs`); skins and morphs stand still. Quantised, sparse or
+//! compressed vertices are refused.
 
 use std::collections::HashMap;
 
@@ -11,7 +12,7 @@ use gltf::mesh::Mode;
 use super::super::source::Source;
 use super::super::{Corners, Materials, Mesh, Scene, SceneError, Shading};
 use super::gltf_buffers::Buffers;
-use super::gltf_look;
+use super::{gltf_look, gltf_motion};
 
 /// Reads the default scene of a document, or its first, or, if it declares none, all its nodes.
 pub(super) fn load(source: &Source) -> Result<Scene, SceneError> {
@@ -32,7 +33,8 @@ pub(super) fn load(source: &Source) -> Result<Scene, SceneError> {
         let mesh = read_mesh(file, &buffers, &mesh, &mut scene.warnings)?;
         scene.meshes.push(mesh);
     }
-    add_nodes(file, &document, &mut scene)?;
+    let placed = add_nodes(file, &document, &mut scene)?;
+    gltf_motion::read(&document, &buffers, &placed, &mut scene);
     Ok(scene)
 }
 
@@ -175,8 +177,13 @@ fn assemble(mode: Mode, indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     })
 }
 
-/// Adds the nodes of the scene that is shown, each after its parent, in the document's order of children.
-fn add_nodes(file: &str, document: &gltf::Document, scene: &mut Scene) -> Result<(), SceneError> {
+/// Adds the nodes of the scene that is shown, each after its parent, in the document's order of children; tells which
+/// one each of the document's became.
+fn add_nodes(
+    file: &str,
+    document: &gltf::Document,
+    scene: &mut Scene,
+) -> Result<Vec<Option<u32>>, SceneError> {
     let roots: Vec<gltf::Node<'_>> = match document.default_scene().or_else(|| document.scenes().next()) {
         Some(shown) => shown.nodes().collect(),
         None => {
@@ -187,11 +194,11 @@ fn add_nodes(file: &str, document: &gltf::Document, scene: &mut Scene) -> Result
             document.nodes().filter(|node| !is_child[node.index()]).collect()
         }
     };
-    let mut reached = vec![false; document.nodes().len()];
+    let mut placed = vec![None; document.nodes().len()];
     let mut stack: Vec<_> = roots.into_iter().rev().map(|root| (None, root)).collect();
     while let Some((parent, node)) = stack.pop() {
         let name = node.name().unwrap_or("");
-        if std::mem::replace(&mut reached[node.index()], true) {
+        if placed[node.index()].is_some() {
             let place = format!("node {} {name:?}", node.index());
             let expected = "a tree: one way to each node, no cycle";
             return Err(SceneError::malformed(file, place, "it is reached twice", expected));
@@ -199,10 +206,11 @@ fn add_nodes(file: &str, document: &gltf::Document, scene: &mut Scene) -> Result
         let matrix = Mat4::from_cols_array_2d(&node.transform().matrix());
         let mesh = node.mesh().map(|mesh| mesh.index() as u32);
         let index = scene.add_node(parent, name, Affine3A::from_mat4(matrix), mesh);
+        placed[node.index()] = Some(index);
         let children: Vec<_> = node.children().collect();
         stack.extend(children.into_iter().rev().map(|child| (Some(index), child)));
     }
-    Ok(())
+    Ok(placed)
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ mod base64;
 mod gltf;
 mod gltf_buffers;
 mod gltf_look;
+mod gltf_motion;
 mod mtl;
 mod obj;
 mod obj_check;

@@ -265,6 +265,7 @@ fn fly(stage: &mut Stage) {
 mod tests {
     use super::super::car;
     use super::*;
+    use crate::geometry::Aabb;
     use crate::scene::{Pose, describe};
 
     fn scene() -> Scene {
@@ -297,11 +298,13 @@ mod tests {
         nodes
     }
 
-    fn bounds(scene: &Scene, pose: &Pose) -> crate::geometry::Aabb {
-        of_car(scene).iter().fold(crate::geometry::Aabb::EMPTY, |all, node| {
-            let mesh = scene.nodes[*node as usize].mesh.map(|mesh| &scene.meshes[mesh as usize]);
-            mesh.map_or(all, |mesh| all.union(mesh.bounds.transformed(&pose.world[*node as usize])))
-        })
+    /// The smallest box around all vertices of the car.
+    fn bounds(scene: &Scene, pose: &Pose) -> Aabb {
+        let placed = of_car(scene).into_iter().filter_map(|node| Some((node, scene.nodes[node as usize].mesh?)));
+        Aabb::of_points(placed.flat_map(|(node, mesh)| {
+            let world = pose.world[node as usize];
+            scene.meshes[mesh as usize].positions.iter().map(move |position| world.transform_point3(*position))
+        }))
     }
 
     #[test]

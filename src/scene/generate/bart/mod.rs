@@ -8,17 +8,17 @@ use super::super::{Corners, Curve, Material, Materials, Mesh, Motion, Scene, Spl
 use super::{Aisles, Generator};
 
 mod art;
-// mod car;
-// mod city;
-// mod kitchen;
+mod car;
+mod city;
+mod kitchen;
 mod museum;
 mod pictures;
-// mod robots;
-// mod walker;
+mod robots;
+mod walker;
 
-// KITCHEN
+pub(super) use kitchen::{EIGHT, FIVE, FOUR, KITCHEN, NINE, ONE, SEVEN, SIX, TEN, THREE, TWO};
 pub(super) use museum::{K3, K4, K5, K6, K7, K8};
-// pub(super) use robots::ROBOTS;
+pub(super) use robots::ROBOTS;
 
 /// A scene in the making.
 struct Stage {

@@ -50,7 +50,9 @@ fn robots() -> Scene {
             (24.0, at(19.0, 10.0, 52.0), at(18.0, 1.5, 30.0)),
             (30.0, at(20.0, 14.0, 36.0), at(8.0, 2.0, 14.0)),
             (36.0, at(14.0, 18.0, 26.0), at(2.0, 2.0, 6.0)),
-            (STILL - 3.0, at(4.0, 22.0, 18.0), middle),
+            (STILL - 4.0, at(4.0, 22.0, 18.0), middle),
+            // Twice there, so that it has come to rest the second time.
+            (STILL - 1.0, high, middle),
             (STILL, high, middle),
             (STILL + 2.0, high, middle),
             (END, high, middle),

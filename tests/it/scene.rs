@@ -49,6 +49,15 @@ fn fingerprint(scene: &Scene) -> u64 {
             .for_each(|number| add(&(number + 0.0).to_le_bytes()));
         mesh.triangles.iter().flatten().for_each(|vertex| add(&vertex.to_le_bytes()));
     }
+    // Five frames stand for what moves.
+    for time in scene.animation.times(if scene.animation.is_still() { 0 } else { 5 }) {
+        let pose = scene.pose(time);
+        let view = pose.view.expect("what is animated here has a camera");
+        let bent = pose.bent.iter().flat_map(|bent| bent.positions.iter().chain(&bent.normals));
+        let points = bent.chain([&view.eye, &view.look, &view.up]).flat_map(|point| point.to_array());
+        let placed = pose.world.iter().flat_map(|world| world.to_cols_array());
+        points.chain(placed).for_each(|number| add(&(number + 0.0).to_le_bytes()));
+    }
     hash
 }
 

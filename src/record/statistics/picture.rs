@@ -76,7 +76,10 @@ mod tests {
         assert_eq!(pnsr(0.0), Some(f64::INFINITY));
         assert_eq!(mean_square_error(&white, &black[..9]), None);
         assert_eq!(mean_square_error(&[], &[]), None);
-        assert_eq!((pnsr(f64::NAN), pnsr(-0.1), least_error_pnsr(0), error_free_pnsr(0)), (None, None, None, None));
+        assert_eq!(
+            (pnsr(f64::NAN), pnsr(-0.1), least_error_pnsr(0), error_free_pnsr(0)),
+            (None, None, None, None)
+        );
     }
 
     #[test]

@@ -36,8 +36,10 @@ fn textbook(keys: &[SplineKey<Vec3>], time: f64) -> DVec3 {
         let [t, c, b] = [keys[at].tension, keys[at].continuity, keys[at].bias].map(f64::from);
         let [p, q, r] = [at - 1, at, at + 1].map(|at| keys[at].value.as_dvec3());
         let [before, after] = [at - 1, at].map(|at| keys[at + 1].time - keys[at].time);
-        let into = (q - p) * (0.5 * (1.0 - t) * (1.0 - c) * (1.0 + b)) + (r - q) * (0.5 * (1.0 - t) * (1.0 + c) * (1.0 - b));
-        let out = (q - p) * (0.5 * (1.0 - t) * (1.0 + c) * (1.0 + b)) + (r - q) * (0.5 * (1.0 - t) * (1.0 - c) * (1.0 - b));
+        let into = (q - p) * (0.5 * (1.0 - t) * (1.0 - c) * (1.0 + b))
+            + (r - q) * (0.5 * (1.0 - t) * (1.0 + c) * (1.0 - b));
+        let out = (q - p) * (0.5 * (1.0 - t) * (1.0 + c) * (1.0 + b))
+            + (r - q) * (0.5 * (1.0 - t) * (1.0 - c) * (1.0 - b));
         (into * (2.0 * before / (before + after)), out * (2.0 * after / (before + after)))
     };
     let u = (time - keys[at].time) / (keys[at + 1].time - keys[at].time);
@@ -142,7 +144,9 @@ fn lines_steps_and_hermite_curves_do_what_they_are_called() {
 fn rotations_take_the_shorter_way_evenly() {
     let curve = |to: f32| Curve::Linear(vec![(0.0, Quat::IDENTITY), (1.0, about(Vec3::Y, to))]);
     let angle = |turn: DQuat| 2.0 * turn.y.atan2(turn.w);
-    for (to, expected) in [(90.0, 22.5), (170.0, 42.5), (200.0, -40.0), (-90.0, -22.5), (270.0, -22.5), (360.0, 0.0)] {
+    for (to, expected) in
+        [(90.0, 22.5), (170.0, 42.5), (200.0, -40.0), (-90.0, -22.5), (270.0, -22.5), (360.0, 0.0)]
+    {
         let found = angle(curve(to).at(0.25).unwrap()).to_degrees();
         let off = (found - expected).rem_euclid(360.0);
         assert!(off.min(360.0 - off) < 1e-4, "{to}: {found}");
@@ -164,7 +168,12 @@ fn a_spline_about_one_axis_passes_its_angles_at_their_speed() {
     let turns: Vec<_> = turns
         .zip(angles)
         .map(|(turn, angle)| SplineKey {
-            value: Quat::from_xyzw(0.0, 0.0, (angle.to_radians() / 2.0).sin(), (angle.to_radians() / 2.0).cos()),
+            value: Quat::from_xyzw(
+                0.0,
+                0.0,
+                (angle.to_radians() / 2.0).sin(),
+                (angle.to_radians() / 2.0).cos(),
+            ),
             ..turn
         })
         .collect();
@@ -227,7 +236,8 @@ fn rotations_agree_with_squad_in_matrices() {
     let b = matrices[2] * matrix((ways[1] - into) * 0.5);
     let curve = Curve::Spline(keys);
     for share in [0.0, 0.1, 0.37, 0.5, 0.8, 0.99, 1.0] {
-        let expected = mix(2.0 * share * (1.0 - share), mix(share, matrices[1], matrices[2]), mix(share, a, b));
+        let expected =
+            mix(2.0 * share * (1.0 - share), mix(share, matrices[1], matrices[2]), mix(share, a, b));
         let found = DMat3::from_quat(curve.at(1.0 + 2.0 * share).unwrap());
         assert!(found.abs_diff_eq(expected, 1e-7), "{share}: {found} {expected}");
     }
@@ -235,8 +245,9 @@ fn rotations_agree_with_squad_in_matrices() {
 
 #[test]
 fn signs_of_keys_do_what_they_do_in_barts_own_code() {
-    let keys: Vec<_> =
-        (0..7).map(|at| key(f64::from(at), about(Vec3::new(1.0, at as f32, 0.5), 30.0 * at as f32), [0.0; 3])).collect();
+    let keys: Vec<_> = (0..7)
+        .map(|at| key(f64::from(at), about(Vec3::new(1.0, at as f32, 0.5), 30.0 * at as f32), [0.0; 3]))
+        .collect();
     let plain = Curve::Spline(keys.clone());
     let turned = |signs: &[usize]| {
         let mut keys = keys.clone();
@@ -278,8 +289,10 @@ fn opposite_turned_and_still_keys_give_rotations() {
         [Quat::from_xyzw(0.0, 0.0, 0.0, 3e38), x * 1e38, Quat::IDENTITY, Quat::IDENTITY],
     ] {
         for shape in [[0.0; 3], [-1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [f32::MAX, f32::MIN, 1e20]] {
-            let keys: Vec<_> = (0..4).map(|at| key(f64::from(at as u8), values[at as usize], shape)).collect();
-            let hermite = values.map(|value| HermiteKey { time: 0.0, value, arriving: value, leaving: value });
+            let keys: Vec<_> =
+                (0..4).map(|at| key(f64::from(at as u8), values[at as usize], shape)).collect();
+            let hermite =
+                values.map(|value| HermiteKey { time: 0.0, value, arriving: value, leaving: value });
             let hermite = (0..4).map(|at| HermiteKey { time: at as f64, ..hermite[at] }).collect();
             for curve in [Curve::Spline(keys.clone()), Curve::Hermite(hermite)] {
                 for step in 0..=40 {
@@ -307,7 +320,10 @@ fn a_transform_scales_then_turns_then_moves() {
 
 #[test]
 fn things_are_seen_until_a_key_says_otherwise() {
-    let motion = Motion { visibility: vec![(1.0, false), (2.0, true), (2.0, false), (3.0, true)], ..Motion::default() };
+    let motion = Motion {
+        visibility: vec![(1.0, false), (2.0, true), (2.0, false), (3.0, true)],
+        ..Motion::default()
+    };
     let seen = [0.0, 1.0, 1.9, 2.0, 2.9, 3.0, 1e9, f64::NAN].map(|time| motion.is_seen(time));
     assert_eq!(seen, [true, false, false, false, false, true, true, true]);
     assert!(Motion::default().is_seen(0.0));

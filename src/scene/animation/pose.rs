@@ -67,8 +67,7 @@ impl Scene {
                 light.colour = Vec3::ZERO;
             }
         }
-        let unshaped =
-            || Bent { mesh: 0, positions: Vec::new(), normals: Vec::new(), bounds: Aabb::EMPTY };
+        let unshaped = || Bent { mesh: 0, positions: Vec::new(), normals: Vec::new(), bounds: Aabb::EMPTY };
         pose.bent.resize_with(animation.bends.len(), unshaped);
         animation.bends.iter().zip(&mut pose.bent).for_each(|(bend, bent)| bend.shape(time, bent));
     }
@@ -77,7 +76,8 @@ impl Scene {
     /// renders a [`Pose`] is held against.
     pub fn still(&self, time: f64) -> Self {
         let pose = self.pose(time);
-        let mut still = Self { view: pose.view, lights: pose.lights, animation: Animation::default(), ..self.clone() };
+        let mut still =
+            Self { view: pose.view, lights: pose.lights, animation: Animation::default(), ..self.clone() };
         for (index, node) in still.nodes.iter_mut().enumerate() {
             if let Some(motion) = pose.motion[index] {
                 node.transform = pose.moved[motion as usize].0;

@@ -120,7 +120,9 @@ fn bent_meshes_lie_between_their_keys_with_normals_of_length_one() {
 fn memory_is_used_again_and_nothing_of_another_pose_is_left() {
     let (scene, other) = (machine(), by_name("factory-small").unwrap());
     let mut pose = Pose::default();
-    for (scene, time) in [(&scene, 0.1), (&other, 3.0), (&scene, 0.9), (&scene, 0.5), (&Scene::default(), 0.0)] {
+    for (scene, time) in
+        [(&scene, 0.1), (&other, 3.0), (&scene, 0.9), (&scene, 0.5), (&Scene::default(), 0.0)]
+    {
         scene.pose_into(time, &mut pose);
         assert_eq!(format!("{pose:?}"), format!("{:?}", scene.pose(time)));
     }
@@ -147,7 +149,10 @@ fn a_still_scene_is_the_pose() {
         still.validate().unwrap();
         assert!(still.animation.is_still());
         assert_eq!((still.world_transforms(), still.view), (pose.world, pose.view));
-        assert_eq!((&still.meshes[0].positions, still.meshes[0].bounds), (&pose.bent[0].positions, pose.bent[0].bounds));
+        assert_eq!(
+            (&still.meshes[0].positions, still.meshes[0].bounds),
+            (&pose.bent[0].positions, pose.bent[0].bounds)
+        );
         assert_eq!(still.meshes[0].shading.normals.values, pose.bent[0].normals);
         assert_eq!(still.nodes[3].mesh.is_some(), pose.visible[3]);
     }

@@ -23,7 +23,11 @@ impl Scene {
         let animation = &self.animation;
         let (start, end) = (animation.start, animation.end);
         if !(start <= end && start.abs().max(end.abs()) <= FURTHEST) {
-            return fail("animation".into(), format!("from {start} to {end} s"), "a start, then an end, within 1e18 s");
+            return fail(
+                "animation".into(),
+                format!("from {start} to {end} s"),
+                "a start, then an end, within 1e18 s",
+            );
         }
         for (index, motion) in animation.motions.iter().enumerate() {
             if let Err((found, expected)) = motion.check() {
@@ -98,7 +102,11 @@ impl Motion {
             check_curve(curve, |value: &Vec3| value.is_finite(), |value| value.is_finite())?;
         }
         if let Some(curve) = &self.rotation {
-            check_curve(curve, |turn: &Quat| turn.is_finite() && turn.length_squared() > 0.0, |slope| slope.is_finite())?;
+            check_curve(
+                curve,
+                |turn: &Quat| turn.is_finite() && turn.length_squared() > 0.0,
+                |slope| slope.is_finite(),
+            )?;
         }
         check_times(self.visibility.iter().map(|(time, _)| *time), 0)
     }
@@ -113,8 +121,7 @@ fn check_curve<T>(
         Curve::Spline(keys) => {
             check_times(keys.iter().map(|key| key.time), SPLINE)?;
             let is_shaped = |shape: [f32; 3]| shape.iter().all(|number| number.is_finite());
-            keys.iter()
-                .all(|key| is_sound(&key.value) && is_shaped([key.tension, key.continuity, key.bias]))
+            keys.iter().all(|key| is_sound(&key.value) && is_shaped([key.tension, key.continuity, key.bias]))
         }
         Curve::Linear(keys) | Curve::Steps(keys) => {
             check_times(keys.iter().map(|key| key.0), 1)?;
@@ -122,8 +129,7 @@ fn check_curve<T>(
         }
         Curve::Hermite(keys) => {
             check_times(keys.iter().map(|key| key.time), 1)?;
-            keys.iter()
-                .all(|key| is_sound(&key.value) && is_finite(&key.arriving) && is_finite(&key.leaving))
+            keys.iter().all(|key| is_sound(&key.value) && is_finite(&key.arriving) && is_finite(&key.leaving))
         }
     };
     let expected = "finite numbers, rotations of some length";
@@ -137,7 +143,10 @@ fn check_times(times: impl ExactSizeIterator<Item = f64> + Clone, least: usize) 
     }
     // NaN is not below the limit either.
     if !times.clone().all(|time| time.abs() <= FURTHEST) || !times.is_sorted() {
-        return Err(("times that are not in order".into(), "times within 1e18 s, each no less than the one before"));
+        return Err((
+            "times that are not in order".into(),
+            "times within 1e18 s, each no less than the one before",
+        ));
     }
     Ok(())
 }

@@ -7,8 +7,7 @@ fn good() -> Scene {
     let mesh = scene.add_mesh(Mesh::new("m", vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]));
     scene.add_node(None, "a", glam::Affine3A::IDENTITY, Some(mesh));
     scene.lights.push(PointLight { position: Vec3::ZERO, colour: Vec3::ONE });
-    let key =
-        |time: f64| SplineKey { time, value: Vec3::X, tension: 0.0, continuity: 0.0, bias: 0.0 };
+    let key = |time: f64| SplineKey { time, value: Vec3::X, tension: 0.0, continuity: 0.0, bias: 0.0 };
     let hermite = HermiteKey { time: 0.0, value: Vec3::ONE, arriving: Vec3::X, leaving: Vec3::X };
     let bend = |time: f64| BendKey { time, positions: vec![Vec3::ONE; 3], normals: Vec::new() };
     let motion = Motion {
@@ -44,7 +43,8 @@ fn each_fault_is_named() {
         let Some(Curve::Spline(keys)) = &mut animation.motions[0].translation else { panic!("a spline") };
         keys
     }
-    let turn = |turn: Quat| move |a: &mut Animation| a.motions[0].rotation = Some(Curve::Steps(vec![(0.0, turn)]));
+    let turn =
+        |turn: Quat| move |a: &mut Animation| a.motions[0].rotation = Some(Curve::Steps(vec![(0.0, turn)]));
     let cases = [
         (message(|a| a.end = -1.0), "from 0 to -1 s"),
         (message(|a| a.start = f64::NAN), "from NaN to 1 s"),
@@ -68,16 +68,21 @@ fn each_fault_is_named() {
         (message(|a| a.bends.push(a.bends[0].clone())), "mesh 0, which bends already"),
         (message(|a| a.bends[0].keys.clear()), "bend 0: 0 key frames"),
         (message(|a| a.bends[0].keys.swap(0, 1)), "not in order"),
-        (message(|a| a.bends[0].keys[1].positions.push(Vec3::X)), "4 positions and 0 normals; expected the mesh's 3"),
+        (
+            message(|a| a.bends[0].keys[1].positions.push(Vec3::X)),
+            "4 positions and 0 normals; expected the mesh's 3",
+        ),
         (message(|a| a.bends[0].keys[1].normals.push(Vec3::X)), "3 positions and 1 normals"),
         (message(|a| a.bends[0].keys[1].positions[1].x = f32::NAN), "a vertex at 1 s"),
     ];
     for (message, part) in &cases {
         assert!(message.starts_with("good: ") && message.contains(part), "{message:?} lacks {part:?}");
     }
-    assert!(message(|a| {
-        let Some(Curve::Hermite(keys)) = &mut a.motions[0].scale else { panic!("a Hermite curve") };
-        keys[0].leaving.z = f32::NAN;
-    })
-    .contains("no transform"));
+    assert!(
+        message(|a| {
+            let Some(Curve::Hermite(keys)) = &mut a.motions[0].scale else { panic!("a Hermite curve") };
+            keys[0].leaving.z = f32::NAN;
+        })
+        .contains("no transform")
+    );
 }

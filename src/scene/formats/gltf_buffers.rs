@@ -166,7 +166,12 @@ impl<'a> Buffers<'a> {
             return Ok(());
         }
         let (place, found) = (format!("accessor {}", accessor.index()), format!("{values} values"));
-        Err(SceneError::malformed(self.file, place, found, format!("{each} for each of {} times", times.len())))
+        Err(SceneError::malformed(
+            self.file,
+            place,
+            found,
+            format!("{each} for each of {} times", times.len()),
+        ))
     }
 
     /// Vertex indices, of any width.

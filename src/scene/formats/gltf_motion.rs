@@ -69,7 +69,8 @@ fn warn_of_bends(document: &gltf::Document, placed: &[Option<u32>], scene: &mut 
         let name = node.name().unwrap_or("");
         scene.warnings.push(format!("node {} {name:?} has a skin, which stands still", node.index()));
     }
-    for mesh in document.meshes().filter(|mesh| mesh.primitives().any(|part| part.morph_targets().len() > 0)) {
+    for mesh in document.meshes().filter(|mesh| mesh.primitives().any(|part| part.morph_targets().len() > 0))
+    {
         let name = mesh.name().unwrap_or("");
         scene.warnings.push(format!("mesh {} {name:?} has morph targets, which stand still", mesh.index()));
     }

@@ -25,7 +25,11 @@ fn text() -> String {
         [(0, 3, "VEC3", 3), (9, 2, "SCALAR", 1), (11, 2, "VEC4", 4), (19, 2, "VEC3", 3), (25, 6, "VEC3", 3)]
     {
         let view = views.len();
-        views.push(format!(r#"{{"buffer":0,"byteOffset":{},"byteLength":{}}}"#, 4 * start, 4 * count * parts));
+        views.push(format!(
+            r#"{{"buffer":0,"byteOffset":{},"byteLength":{}}}"#,
+            4 * start,
+            4 * count * parts
+        ));
         let bounds = if view == 0 { r#","min":[0,0,0],"max":[1,1,0]"# } else { "" };
         accessors.push(format!(
             r#"{{"bufferView":{view},"componentType":5126,"count":{count},"type":"{kind}"{bounds}}}"#
@@ -102,7 +106,11 @@ fn what_is_wrong_with_a_channel_leaves_the_shape_whole() {
     for (from, to, part) in [
         (r#""input":1,"output":2"#, r#""input":1,"output":3"#, "accessor 3"),
         (r#""input":1,"output":2"#, r#""input":2,"output":2"#, "accessor 2"),
-        (r#""output":4,"interpolation":"CUBICSPLINE""#, r#""output":4"#, "6 values; expected 1 for each of 2 times"),
+        (
+            r#""output":4,"interpolation":"CUBICSPLINE""#,
+            r#""output":4"#,
+            "6 values; expected 1 for each of 2 times",
+        ),
         (r#""byteOffset":36"#, r#""byteOffset":44"#, "times that are not in order"),
     ] {
         let whole = text();

@@ -39,8 +39,10 @@ pub(super) fn art(k: u32) -> (Mesh, Bend) {
 type Corner = (DVec3, DVec3);
 
 fn key(time: f64, triangles: impl Iterator<Item = [Corner; 3]>) -> BendKey {
-    let (positions, normals) =
-        triangles.flatten().map(|(at, normal)| ((at + MIDDLE).as_vec3(), normal.as_vec3())).unzip::<Vec3, Vec3, _, _>();
+    let (positions, normals) = triangles
+        .flatten()
+        .map(|(at, normal)| ((at + MIDDLE).as_vec3(), normal.as_vec3()))
+        .unzip::<Vec3, Vec3, _, _>();
     BendKey { time, positions, normals }
 }
 
@@ -82,7 +84,9 @@ fn tetrahedron(frequency: u32) -> Vec<[DVec3; 3]> {
     let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]]
         .map(|corner| DVec3::from(corner) / 3.0_f64.sqrt());
     let mut triangles = Vec::with_capacity(4 * (frequency * frequency) as usize);
-    for [a, b, c] in [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]].map(|face| face.map(|corner: usize| corners[corner])) {
+    for [a, b, c] in
+        [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]].map(|face| face.map(|corner: usize| corners[corner]))
+    {
         let at = |row: u32, column: u32| {
             let [down, on] = [row, column].map(|steps| f64::from(steps) / f64::from(frequency));
             a + (b - a) * (down - on) + (c - a) * on
@@ -118,11 +122,17 @@ mod tests {
             let closed = |key: &BendKey| {
                 let (corners, _) = key.positions.as_chunks::<3>();
                 let middle = MIDDLE.as_vec3();
-                corners.iter().map(|c| (c[0] - middle).dot((c[1] - middle).cross(c[2] - middle)) / 6.0).sum::<f32>()
+                corners
+                    .iter()
+                    .map(|c| (c[0] - middle).dot((c[1] - middle).cross(c[2] - middle)) / 6.0)
+                    .sum::<f32>()
             };
             // Each is closed and has its outside out: their volumes are those of the bodies.
             assert!((closed(&bend.keys[0]) - 1.3_f32.powi(3) * 8.0 / 27.0 * 3.0_f32.sqrt()).abs() < 1e-3);
-            assert!(closed(&bend.keys[3]) > 1.9 && closed(&bend.keys[3]) < 2.573, "a ball of 0.85 m, from within");
+            assert!(
+                closed(&bend.keys[3]) > 1.9 && closed(&bend.keys[3]) < 2.573,
+                "a ball of 0.85 m, from within"
+            );
             let radii = bend.keys[3].positions.iter().map(|at| at.distance(MIDDLE.as_vec3()));
             assert!(radii.into_iter().all(|radius| (radius - 0.85).abs() < 1e-5));
         }
@@ -132,8 +142,11 @@ mod tests {
     fn the_cylinder_is_filled_evenly() {
         let (_, bend) = art(6);
         let (corners, _) = bend.keys[1].positions.as_chunks::<3>();
-        let middles: Vec<Vec3> = corners.iter().map(|c| (c[0] + c[1] + c[2]) / 3.0 - MIDDLE.as_vec3()).collect();
-        let share = |is_in: &dyn Fn(&Vec3) -> bool| middles.iter().filter(|at| is_in(at)).count() as f64 / middles.len() as f64;
+        let middles: Vec<Vec3> =
+            corners.iter().map(|c| (c[0] + c[1] + c[2]) / 3.0 - MIDDLE.as_vec3()).collect();
+        let share = |is_in: &dyn Fn(&Vec3) -> bool| {
+            middles.iter().filter(|at| is_in(at)).count() as f64 / middles.len() as f64
+        };
         assert_eq!(share(&|at| at.x.hypot(at.z) <= 1.5 && (-1.2..=1.6).contains(&at.y)), 1.0);
         // Half of the radius holds a quarter of the volume.
         assert!((share(&|at| at.x.hypot(at.z) < 0.75) - 0.25).abs() < 0.03);

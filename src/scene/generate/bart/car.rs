@@ -61,8 +61,15 @@ impl Drive {
 pub(super) fn car(stage: &mut Stage) {
     let keys = WAY.map(|(time, x, z)| (time, Vec3::new(x, 0.0, z)));
     let drive = Drive { way: spline(keys).expect("it has keys") };
-    let red = stage.material(Material { highlight: Vec3::splat(0.6), exponent: 120, ..Material::polished("car", Vec3::new(0.65, 0.06, 0.05), 1.6) });
-    let glass = stage.material(Material { mirror: Vec3::splat(0.3), ..Material::matt("windows", Vec3::new(0.05, 0.07, 0.1)) });
+    let red = stage.material(Material {
+        highlight: Vec3::splat(0.6),
+        exponent: 120,
+        ..Material::polished("car", Vec3::new(0.65, 0.06, 0.05), 1.6)
+    });
+    let glass = stage.material(Material {
+        mirror: Vec3::splat(0.3),
+        ..Material::matt("windows", Vec3::new(0.05, 0.07, 0.1))
+    });
     let rubber = stage.material(Material::matt("rubber", Vec3::splat(0.06)));
     let chrome = stage.material(Material::metal("chrome", Vec3::splat(0.7), 200));
     let root = stage.moving(None, whole(&drive), None);

@@ -33,7 +33,8 @@ pub(super) fn city(stage: &mut Stage) {
         stage.material(Material { texture: Some(texture), ..glass })
     });
     let half = PITCH * BLOCKS as f32;
-    let corners = [(-half, half), (half, half), (half, -half), (-half, -half)].map(|(x, z)| Vec3::new(x, 0.0, z));
+    let corners =
+        [(-half, half), (half, half), (half, -half), (-half, -half)].map(|(x, z)| Vec3::new(x, 0.0, z));
     stage.set(sheet("ground", corners, [2.0 * BLOCKS as f32; 2]), road, Vec3::ZERO);
     let mut random = SplitMix64::new(9_218);
     for (x, z) in (0..BLOCKS).flat_map(|x| (0..BLOCKS).map(move |z| (x - BLOCKS / 2, z - BLOCKS / 2))) {

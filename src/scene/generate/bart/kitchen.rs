@@ -105,8 +105,13 @@ fn textures(stage: &mut Stage) -> u32 {
         }),
         marble("marble", 512, 2.0, [[190.0, 190.0, 195.0], [180.0, 182.0, 190.0]]),
         picture("garden", 512, 256, |x, y| {
-            let hedge = 150.0 + 30.0 * super::super::noise_sphere::lattice(glam::DVec3::new(x * 0.05, y * 0.05, 2.0));
-            if y < hedge { [150.0 + y * 0.3, 190.0 + y * 0.2, 240.0] } else { [60.0, 120.0 - (y - 150.0) * 0.4, 45.0] }
+            let hedge =
+                150.0 + 30.0 * super::super::noise_sphere::lattice(glam::DVec3::new(x * 0.05, y * 0.05, 2.0));
+            if y < hedge {
+                [150.0 + y * 0.3, 190.0 + y * 0.2, 240.0]
+            } else {
+                [60.0, 120.0 - (y - 150.0) * 0.4, 45.0]
+            }
         }),
         painting("picture", 3.0, [[200.0, 120.0, 50.0], [60.0, 90.0, 120.0]]),
         facade("blind", 11.0, [205.0, 200.0, 190.0]),
@@ -139,16 +144,22 @@ fn walls(stage: &mut Stage) {
     let hung = [("window", 5, 1.5, 1.9, 0.9), ("picture", 6, 3.1, 1.6, 0.6), ("blind", 7, 0.9, 1.9, 0.7)];
     for (name, texture, z, y, size) in hung {
         let material = textured(stage, name, texture, 1.5);
-        stage.set(cuboid("frame", Vec3::new(0.03, size * 0.8 + 0.08, size + 0.08)), frame, Vec3::new(0.02, y - size * 0.4 - 0.04, z));
+        stage.set(
+            cuboid("frame", Vec3::new(0.03, size * 0.8 + 0.08, size + 0.08)),
+            frame,
+            Vec3::new(0.02, y - size * 0.4 - 0.04, z),
+        );
         let (low, high, near, far) = (y - size * 0.4, y + size * 0.4, z + size * 0.5, z - size * 0.5);
-        let corners = [(low, near), (low, far), (high, far), (high, near)].map(|(y, z)| Vec3::new(0.04, y, z));
+        let corners =
+            [(low, near), (low, far), (high, far), (high, near)].map(|(y, z)| Vec3::new(0.04, y, z));
         stage.set(sheet(name, corners, [1.0; 2]), material, Vec3::ZERO);
     }
 }
 
 /// Along the back wall below and above, with doors and knobs; an oven, a fridge.
 fn cupboards(stage: &mut Stage, wood: u32) {
-    let steel = stage.material(Material { diffuse: Vec3::splat(0.1), ..Material::metal("steel", Vec3::splat(0.5), 150) });
+    let steel = stage
+        .material(Material { diffuse: Vec3::splat(0.1), ..Material::metal("steel", Vec3::splat(0.5), 150) });
     let top = stage.material(Material { texture: Some(4), ..Material::polished("marble", Vec3::ONE, 1.6) });
     let white = stage.material(Material::polished("enamel", Vec3::splat(0.75), 1.5));
     let knob = stage.mesh(ball(0.018, 5), steel);
@@ -168,14 +179,22 @@ fn cupboards(stage: &mut Stage, wood: u32) {
     stage.set(cuboid("worktop", Vec3::new(3.74, 0.04, 0.62)), top, Vec3::new(1.95, 0.86, 0.31));
     stage.set(cuboid("fridge", Vec3::new(0.62, 1.8, 0.62)), white, Vec3::new(4.2, 0.02, 0.32));
     stage.set(cylinder("handle", 0.015, 0.6, 200), steel, Vec3::new(3.98, 0.8, 0.66));
-    stage.set(lathe("sink", &[(0.02, 0.0), (0.2, 0.01), (0.22, 0.03), (0.23, 0.02)], 64, 4), steel, Vec3::new(1.2, 0.901, 0.32));
+    stage.set(
+        lathe("sink", &[(0.02, 0.0), (0.2, 0.01), (0.22, 0.03), (0.23, 0.02)], 64, 4),
+        steel,
+        Vec3::new(1.2, 0.901, 0.32),
+    );
     stage.set(lathe("kettle", &POT, 64, 5), steel, Vec3::new(2.6, 0.901, 0.3));
 }
 
 /// The table and what is on it, under two lamps.
 fn table(stage: &mut Stage, wood: u32) {
     let steel = stage.material(Material::metal("table steel", Vec3::splat(0.65), 150));
-    let china = stage.material(Material { highlight: Vec3::splat(0.4), exponent: 100, ..Material::polished("china", Vec3::new(0.8, 0.78, 0.72), 1.6) });
+    let china = stage.material(Material {
+        highlight: Vec3::splat(0.4),
+        exponent: 100,
+        ..Material::polished("china", Vec3::new(0.8, 0.78, 0.72), 1.6)
+    });
     let glass = stage.material(Material::dielectric("glass", 1.5));
     let dark = Material { texture: Some(2), ..Material::polished("table", Vec3::ONE, 1.5) };
     let dark = stage.material(dark);
@@ -188,18 +207,28 @@ fn table(stage: &mut Stage, wood: u32) {
         stage.scene.add_node(None, "leg", Affine3A::from_translation(place), Some(leg));
     }
     let on = |x: f32, z: f32, up: f32| TABLE + Vec3::new(x, TOP.1 + up, z);
-    let plate = lathe("plate", &[(0.0, 0.0), (0.06, 0.0), (0.08, 0.012), (0.12, 0.02), (0.118, 0.024), (0.0, 0.01)], 64, 4);
+    let plate = lathe(
+        "plate",
+        &[(0.0, 0.0), (0.06, 0.0), (0.08, 0.012), (0.12, 0.02), (0.118, 0.024), (0.0, 0.01)],
+        64,
+        4,
+    );
     let tumbler = lathe("glass", &VASE, 48, 3);
     let (plate, tumbler) = (stage.mesh(plate, china), stage.mesh(tumbler, glass));
     for (x, z) in [-0.45, 0.0, 0.45].into_iter().flat_map(|x| [-0.26, 0.26].map(|z| (x, z))) {
         stage.scene.add_node(None, "plate", Affine3A::from_translation(on(x, z, 0.001)), Some(plate));
-        let place = Affine3A::from_scale_rotation_translation(Vec3::splat(0.7), glam::Quat::IDENTITY, on(x + 0.17, z * 0.6, 0.001));
+        let place = Affine3A::from_scale_rotation_translation(
+            Vec3::splat(0.7),
+            glam::Quat::IDENTITY,
+            on(x + 0.17, z * 0.6, 0.001),
+        );
         stage.scene.add_node(None, "glass", place, Some(tumbler));
     }
     let glaze = stage.material(Material::polished("glaze", Vec3::new(0.1, 0.2, 0.42), 1.6));
     stage.set(lathe("pot", &POT, 120, 6), glaze, on(0.0, 0.02, 0.001));
     stage.set(lathe("vase", &VASE, 96, 6), glass, on(-0.64, 0.0, 0.001));
-    let fruit = [[0.7, 0.25, 0.05], [0.5, 0.55, 0.08], [0.65, 0.08, 0.06], [0.75, 0.55, 0.1], [0.4, 0.5, 0.1]];
+    let fruit =
+        [[0.7, 0.25, 0.05], [0.5, 0.55, 0.08], [0.65, 0.08, 0.06], [0.75, 0.55, 0.1], [0.4, 0.5, 0.1]];
     for (number, colour) in fruit.into_iter().enumerate() {
         let skin = stage.material(Material::polished("fruit", Vec3::from(colour), 1.4));
         let (sin, cos) = (number as f64 * 1.257).sin_cos();
@@ -215,7 +244,12 @@ fn table(stage: &mut Stage, wood: u32) {
 /// Four of them, with a ring between their legs.
 fn stools(stage: &mut Stage, wood: u32) {
     let steel = stage.material(Material::metal("stool steel", Vec3::splat(0.6), 150));
-    let seat = lathe("seat", &[(0.0, 0.56), (0.15, 0.56), (0.17, 0.58), (0.16, 0.61), (0.1, 0.62), (0.0, 0.61)], 64, 4);
+    let seat = lathe(
+        "seat",
+        &[(0.0, 0.56), (0.15, 0.56), (0.17, 0.58), (0.16, 0.61), (0.1, 0.62), (0.0, 0.61)],
+        64,
+        4,
+    );
     let ring = lathe("ring", &[(0.15, 0.2), (0.16, 0.2), (0.16, 0.21), (0.15, 0.21), (0.15, 0.2)], 64, 3);
     let (seat, ring) = (stage.mesh(seat, wood), stage.mesh(ring, steel));
     let leg = stage.mesh(cylinder("stool leg", 0.012, 0.57, 200), steel);
@@ -300,10 +334,14 @@ mod tests {
 
     /// The smallest box around all vertices of the car.
     fn bounds(scene: &Scene, pose: &Pose) -> Aabb {
-        let placed = of_car(scene).into_iter().filter_map(|node| Some((node, scene.nodes[node as usize].mesh?)));
+        let placed =
+            of_car(scene).into_iter().filter_map(|node| Some((node, scene.nodes[node as usize].mesh?)));
         Aabb::of_points(placed.flat_map(|(node, mesh)| {
             let world = pose.world[node as usize];
-            scene.meshes[mesh as usize].positions.iter().map(move |position| world.transform_point3(*position))
+            scene.meshes[mesh as usize]
+                .positions
+                .iter()
+                .map(move |position| world.transform_point3(*position))
         }))
     }
 
@@ -312,7 +350,10 @@ mod tests {
         let scene = scene();
         let nodes = of_car(&scene);
         let triangles = nodes.iter().filter_map(|node| scene.nodes[*node as usize].mesh);
-        assert_eq!(triangles.map(|mesh| scene.meshes[mesh as usize].triangles.len()).sum::<usize>(), car::TRIANGLES);
+        assert_eq!(
+            triangles.map(|mesh| scene.meshes[mesh as usize].triangles.len()).sum::<usize>(),
+            car::TRIANGLES
+        );
         let moves = |node: u32| scene.animation.followers.iter().any(|(follower, _)| *follower == node);
         let levels = |node: u32| {
             let above = std::iter::successors(Some(node), |node| scene.nodes[*node as usize].parent);
@@ -333,14 +374,18 @@ mod tests {
         for time in scene.animation.times(200) {
             let car = bounds(&scene, &scene.pose(time));
             assert!(car.min.y > -1e-3 && car.max.y < 0.2, "{time}: {car:?}");
-            assert!(car.min.cmpge(Vec3::new(0.1, -1e-3, 0.55)).all() && car.max.cmplt(ROOM).all(), "{time}: {car:?}");
+            assert!(
+                car.min.cmpge(Vec3::new(0.1, -1e-3, 0.55)).all() && car.max.cmplt(ROOM).all(),
+                "{time}: {car:?}"
+            );
         }
     }
 
     #[test]
     fn wheels_roll_as_far_as_the_car_drives() {
         let scene = scene();
-        let wheel = of_car(&scene).into_iter().find(|node| scene.nodes[*node as usize].name == "wheel").unwrap();
+        let wheel =
+            of_car(&scene).into_iter().find(|node| scene.nodes[*node as usize].name == "wheel").unwrap();
         let root = of_car(&scene)[0];
         // In a short while on a straight piece, about its axle as much as the way over its radius.
         let (early, late) = (scene.pose(12.0), scene.pose(12.002));
@@ -367,7 +412,10 @@ mod tests {
             [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].iter().all(|(x, y)| {
                 let ray = ahead + right * (half * x * 4.0 / 3.0) + view.up * (half * y);
                 let met = view.eye + ray * ((edge - view.eye.x) / ray.x);
-                ray.x > 0.0 && view.eye.x < edge && (TOP.0..TOP.1).contains(&met.y) && (met.z - TABLE.z).abs() < TABLE_HALF.z
+                ray.x > 0.0
+                    && view.eye.x < edge
+                    && (TOP.0..TOP.1).contains(&met.y)
+                    && (met.z - TABLE.z).abs() < TABLE_HALF.z
             })
         };
         let times: Vec<f64> = scene.animation.times(800).collect();

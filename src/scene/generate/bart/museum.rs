@@ -22,7 +22,10 @@ macro_rules! level {
         pub(in crate::scene::generate) const $const: Generator = Generator {
             name: concat!("bart-museum-", $k),
             about: concat!(
-                "BART's museum, level ", $k, ": 10,143 triangles, 8 cones, ", $triangles,
+                "BART's museum, level ",
+                $k,
+                ": 10,143 triangles, 8 cones, ",
+                $triangles,
                 " that fly; 6 s (stand-in: Paper III, Museum)"
             ),
             generate: || museum(concat!("bart-museum-", $k), $k),
@@ -119,7 +122,12 @@ fn paintings(stage: &mut Stage) {
         [[40.0, 90.0, 50.0], [230.0, 220.0, 160.0]],
         [[90.0, 40.0, 110.0], [230.0, 150.0, 90.0]],
     ];
-    let walls = [(-HALF.x + 0.04, 0.0, 0.5), (HALF.x - 0.04, 0.0, -0.5), (0.0, HALF.z - 0.04, 1.0), (2.9, -HALF.z + 0.04, 0.0)];
+    let walls = [
+        (-HALF.x + 0.04, 0.0, 0.5),
+        (HALF.x - 0.04, 0.0, -0.5),
+        (0.0, HALF.z - 0.04, 1.0),
+        (2.9, -HALF.z + 0.04, 0.0),
+    ];
     for (number, ((x, z, half_turns), palette)) in walls.into_iter().zip(palettes).enumerate() {
         let name = format!("painting {number}");
         stage.scene.textures.push(painting(&name, 10.0 * number as f64, palette));
@@ -136,12 +144,25 @@ fn paintings(stage: &mut Stage) {
 fn furniture(stage: &mut Stage) {
     let mirror = Material::metal("chrome", Vec3::splat(0.55), 80);
     let chrome = stage.material(Material { diffuse: Vec3::splat(0.12), ..mirror });
-    let outline = [(0.0, 0.02), (0.9, 0.02), (0.9, 0.1), (0.7, 0.16), (0.62, 0.3), (0.68, 0.52), (0.74, 0.56), (0.0, 0.57)];
+    let outline = [
+        (0.0, 0.02),
+        (0.9, 0.02),
+        (0.9, 0.1),
+        (0.7, 0.16),
+        (0.62, 0.3),
+        (0.68, 0.52),
+        (0.74, 0.56),
+        (0.0, 0.57),
+    ];
     stage.set(lathe("pedestal", &outline, 64, 3), chrome, Vec3::ZERO);
     let glaze = stage.material(Material::polished("glaze", Vec3::new(0.15, 0.28, 0.4), 1.6));
     let urn = stage.mesh(lathe("urn", &VASE, 24, 3), glaze);
     for (x, z) in [(-5.0, -8.0), (5.0, -8.0), (-5.0, 8.0), (5.0, 8.0)] {
-        let place = Affine3A::from_scale_rotation_translation(Vec3::splat(5.0), glam::Quat::IDENTITY, Vec3::new(x, 0.01, z));
+        let place = Affine3A::from_scale_rotation_translation(
+            Vec3::splat(5.0),
+            glam::Quat::IDENTITY,
+            Vec3::new(x, 0.01, z),
+        );
         stage.scene.add_node(None, "urn", place, Some(urn));
     }
     let oak = stage.material(Material::polished("oak", Vec3::new(0.38, 0.22, 0.1), 1.4));
@@ -184,7 +205,9 @@ mod tests {
             let pose = scene.pose(time);
             let (eye, art) = (pose.view.unwrap().eye, pose.bent[0].bounds);
             for point in [eye, art.min, art.max] {
-                assert!(point.x.abs() < HALF.x && point.z.abs() < HALF.z && point.y > 0.3 && point.y < HALF.y);
+                assert!(
+                    point.x.abs() < HALF.x && point.z.abs() < HALF.z && point.y > 0.3 && point.y < HALF.y
+                );
             }
         }
     }

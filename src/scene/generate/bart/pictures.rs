@@ -17,7 +17,8 @@ pub(super) fn marble(name: &str, size: u32, slabs: f64, colours: [[f64; 3]; 2]) 
     picture(name, size, size, move |x, y| {
         let (u, v) = (x / f64::from(size) * slabs, y / f64::from(size) * slabs);
         let colour = colours[((u as u32 + v as u32) % 2) as usize];
-        let vein = lattice(DVec3::new(u * 2.0, v * 2.0, 3.0)) + 0.5 * lattice(DVec3::new(u * 5.0, v * 5.0, 9.0));
+        let vein =
+            lattice(DVec3::new(u * 2.0, v * 2.0, 3.0)) + 0.5 * lattice(DVec3::new(u * 5.0, v * 5.0, 9.0));
         let seam = u.fract().min(v.fract()) < 0.02;
         let light = if seam { 0.6 } else { 0.85 + 0.1 * vein.abs() };
         colour.map(|part| part * light)

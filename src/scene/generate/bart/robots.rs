@@ -69,7 +69,8 @@ fn way(number: usize) -> Vec<Vec3> {
     // are their beginnings, so that they are spread evenly.
     let street = 0.5 * PITCH;
     let far = PITCH * BLOCKS as f32 * 0.5;
-    let (sign, other) = (if number.is_multiple_of(2) { 1.0 } else { -1.0 }, if number % 4 < 2 { 1.0 } else { -1.0 });
+    let (sign, other) =
+        (if number.is_multiple_of(2) { 1.0 } else { -1.0 }, if number % 4 < 2 { 1.0 } else { -1.0 });
     let distance = far * (1.0 - 0.12 * (number / 4) as f32);
     let begin = match number / 2 % 2 {
         0 => Vec3::new(street * sign, 0.0, distance * other),
@@ -113,7 +114,8 @@ mod tests {
             }
             assert_eq!((moving, triangles), (18, TRIANGLES));
         }
-        let with = |is: fn(&crate::scene::Motion) -> bool| scene.animation.motions.iter().filter(|m| is(m)).count();
+        let with =
+            |is: fn(&crate::scene::Motion) -> bool| scene.animation.motions.iter().filter(|m| is(m)).count();
         assert_eq!(with(|motion| motion.scale.is_some()), ROBOTS_THERE, "translation, rotation and scale");
     }
 
@@ -140,12 +142,19 @@ mod tests {
     #[test]
     fn nobody_sinks_into_the_ground_or_walks_through_a_tower() {
         let scene = robots();
-        let towers: Vec<_> = scene.world_bounds().into_iter().zip(&scene.nodes).filter(|(_, node)| node.name == "tower").collect();
+        let towers: Vec<_> = scene
+            .world_bounds()
+            .into_iter()
+            .zip(&scene.nodes)
+            .filter(|(_, node)| node.name == "tower")
+            .collect();
         assert_eq!(towers.len(), 96);
         for step in 0..=100 {
             let pose = scene.pose(f64::from(step) * 0.5);
             for (index, node) in scene.nodes.iter().enumerate() {
-                let Some(mesh) = node.mesh.filter(|_| node.name != "tower" && node.name != "ground") else { continue };
+                let Some(mesh) = node.mesh.filter(|_| node.name != "tower" && node.name != "ground") else {
+                    continue;
+                };
                 let bounds = scene.meshes[mesh as usize].bounds.transformed(&pose.world[index]);
                 assert!(bounds.min.y > -0.15, "{} at {step}: {bounds:?}", node.name);
                 let hit = towers.iter().find(|(tower, _)| {

@@ -35,7 +35,10 @@ pub(super) struct Parts {
 
 impl Parts {
     pub(super) fn new(stage: &mut Stage) -> Self {
-        let steel = Material { diffuse: Vec3::new(0.2, 0.22, 0.25), ..Material::metal("steel", Vec3::splat(0.35), 60) };
+        let steel = Material {
+            diffuse: Vec3::new(0.2, 0.22, 0.25),
+            ..Material::metal("steel", Vec3::splat(0.35), 60)
+        };
         let steel = stage.material(steel);
         let paint = stage.material(Material::polished("paint", Vec3::new(0.5, 0.16, 0.08), 1.5));
         let glow = stage.material(Material::matt("eyes", Vec3::new(0.9, 0.8, 0.2)));
@@ -54,8 +57,10 @@ impl Parts {
             hand: stage.mesh(moved(cuboid("hand", Vec3::new(0.2, 0.25, 0.12)), Vec3::Y * -0.25), steel),
             thigh: stage.mesh(hanging("thigh", 0.18, 0.85, 400), paint),
             shin: stage.mesh(hanging("shin", 0.14, 0.8, 400), steel),
-            foot: stage.mesh(moved(cuboid("foot", Vec3::new(0.3, 0.15, 0.4)), Vec3::new(0.0, -0.15, 0.06)), steel),
-            toes: stage.mesh(moved(cuboid("toes", Vec3::new(0.3, 0.12, 0.2)), Vec3::new(0.0, -0.12, 0.1)), paint),
+            foot: stage
+                .mesh(moved(cuboid("foot", Vec3::new(0.3, 0.15, 0.4)), Vec3::new(0.0, -0.15, 0.06)), steel),
+            toes: stage
+                .mesh(moved(cuboid("toes", Vec3::new(0.3, 0.12, 0.2)), Vec3::new(0.0, -0.12, 0.1)), paint),
             aerial: 0,
         };
         let corners = [Vec3::new(0.0, 0.25, 0.0), Vec3::new(0.0, 0.8, -0.1), Vec3::new(0.0, 0.65, 0.12)];
@@ -63,7 +68,8 @@ impl Parts {
         // The torso is made of what the others leave over.
         let count = |part: u32| stage.scene.meshes[part as usize].triangles.len();
         let single = [parts.pelvis, parts.head, parts.gun, parts.aerial].map(count);
-        let pairs = [parts.upper_arm, parts.lower_arm, parts.hand, parts.thigh, parts.shin, parts.foot, parts.toes];
+        let pairs =
+            [parts.upper_arm, parts.lower_arm, parts.hand, parts.thigh, parts.shin, parts.foot, parts.toes];
         let rest = TRIANGLES - single.iter().sum::<usize>() - 2 * pairs.map(count).iter().sum::<usize>();
         let torso = smooth(cylinder("torso", 0.5, 1.0, rest as u32));
         parts.torso = stage.mesh(torso, paint);
@@ -99,7 +105,8 @@ impl Way<'_> {
         let swing = |what: &str, place: Vec3, degrees: f64, phase: f64, rest: f64| {
             self.swing(what, place, degrees, phase, rest)
         };
-        let torso = stage.moving(Some(body), swing("torso", Vec3::Y * 0.35, 4.0, 0.25, 0.0), Some(parts.torso));
+        let torso =
+            stage.moving(Some(body), swing("torso", Vec3::Y * 0.35, 4.0, 0.25, 0.0), Some(parts.torso));
         let head = stage.moving(Some(torso), self.head(), Some(parts.head));
         stage.scene.add_node(Some(head), "aerial", Affine3A::IDENTITY, Some(parts.aerial));
         stage.moving(Some(torso), self.gun(), Some(parts.gun));
@@ -132,7 +139,12 @@ impl Way<'_> {
         let step = STRIDE / f64::from(PHASES);
         let count = ((comes - starts) / step).ceil() as u32;
         let walking = (0..count).map(move |at| starts + step * f64::from(at));
-        [starts - 2.0, starts - 1.0].into_iter().chain(walking).chain([comes, comes + 1.0, self.end.max(comes) + 2.0, self.end.max(comes) + 3.0])
+        [starts - 2.0, starts - 1.0].into_iter().chain(walking).chain([
+            comes,
+            comes + 1.0,
+            self.end.max(comes) + 2.0,
+            self.end.max(comes) + 3.0,
+        ])
     }
 
     /// How far it swings at a time: all the way, but for its first and last half second.

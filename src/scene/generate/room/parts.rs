@@ -37,7 +37,8 @@ pub(in crate::scene::generate) const VASE: [(f64, f64); 9] = [
 pub(in crate::scene::generate) const STAND: [(f64, f64); 7] =
     [(0.0, 0.0), (0.16, 0.0), (0.15, 0.02), (0.02, 0.05), (0.015, 0.6), (0.015, 1.4), (0.0, 1.41)];
 /// Its shade, open at both ends.
-pub(in crate::scene::generate) const SHADE: [(f64, f64); 4] = [(0.24, 1.25), (0.12, 1.6), (0.117, 1.6), (0.237, 1.25)];
+pub(in crate::scene::generate) const SHADE: [(f64, f64); 4] =
+    [(0.24, 1.25), (0.12, 1.6), (0.117, 1.6), (0.237, 1.25)];
 
 /// An outline turned about the y axis, each of its pieces cut into `cuts` along a smooth curve through its corners.
 pub(in crate::scene::generate) fn lathe(name: &str, outline: &[(f64, f64)], sides: u32, cuts: u32) -> Mesh {

@@ -1,8 +1,8 @@
 //! glTF 2.0, as text or binary: the node hierarchy and the triangles; nodes that share a mesh go on
 //! sharing it. Of a mesh's primitives those made of triangles (lists, strips, fans) become one mesh;
 //! points and lines have no surface and are left out. Normals, the first texture coordinates and
-//! materials are read, and how nodes move (`gltf_motion.rs`); skins and morphs stand still. Quantised, sparse or
-//! compressed vertices are refused.
+//! materials are read, how nodes move (`gltf_motion.rs`) and meshes bend (`gltf_bend.rs`). Quantised, sparse or compressed
+//! vertices are refused.
 
 use std::collections::HashMap;
 
@@ -11,6 +11,7 @@ use gltf::mesh::Mode;
 
 use super::super::source::Source;
 use super::super::{Corners, Materials, Mesh, Scene, SceneError, Shading};
+use super::gltf_bend::{self, Block};
 use super::gltf_buffers::Buffers;
 use super::{gltf_look, gltf_motion};
 
@@ -29,12 +30,15 @@ pub(super) fn load(source: &Source) -> Result<Scene, SceneError> {
     let buffers = Buffers::read(source, &document, gltf.blob)?;
     let mut scene = Scene::new(file);
     gltf_look::read(source, &document, &buffers, &mut scene);
+    let mut blocks = Vec::new();
     for mesh in document.meshes() {
-        let mesh = read_mesh(file, &buffers, &mesh, &mut scene.warnings)?;
+        let (mesh, of_mesh) = read_mesh(file, &buffers, &mesh, &mut scene.warnings)?;
         scene.meshes.push(mesh);
+        blocks.push(of_mesh);
     }
     let placed = add_nodes(file, &document, &mut scene)?;
     gltf_motion::read(&document, &buffers, &placed, &mut scene);
+    gltf_bend::read(&document, &buffers, &placed, &blocks, &mut scene);
     Ok(scene)
 }
 
@@ -72,14 +76,16 @@ fn check_positions(file: &str, json: &gltf::json::Root) -> Result<(), SceneError
     Ok(())
 }
 
+/// Reads a mesh; tells which vertices came with which of its primitives.
 fn read_mesh(
     file: &str,
     buffers: &Buffers<'_>,
     mesh: &gltf::Mesh<'_>,
     warnings: &mut Vec<String>,
-) -> Result<Mesh, SceneError> {
+) -> Result<(Mesh, Vec<Block>), SceneError> {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     let (mut normals, mut coordinates, mut materials) = (Vec::new(), Vec::new(), Vec::new());
+    let mut blocks = Vec::new();
     // Primitives often share their vertices, one for each material.
     let mut first_of: HashMap<[Option<usize>; 3], (u32, usize)> = HashMap::new();
     for primitive in mesh.primitives() {
@@ -109,6 +115,8 @@ fn read_mesh(
                 extend(&mut normals, read, positions.len(), placed.1, warnings);
                 let read = coordinate.map(|coordinate| buffers.coordinates(&coordinate));
                 extend(&mut coordinates, read, positions.len(), placed.1, warnings);
+                let first = positions.len() - placed.1;
+                blocks.push(Block { primitive: primitive.index(), first, count: placed.1 });
                 first_of.insert(key, placed);
                 placed
             }
@@ -135,7 +143,7 @@ fn read_mesh(
         normals: corners(normals),
         coordinates: Corners::of_vertices(coordinates.into_iter().map(Vec2::from).collect()),
     };
-    Ok(Mesh { shading, ..Mesh::new(mesh.name().unwrap_or(""), positions, triangles) })
+    Ok((Mesh { shading, ..Mesh::new(mesh.name().unwrap_or(""), positions, triangles) }, blocks))
 }
 
 /// Adds what shading knows of the last `count` of `vertices` vertices: 0 for those of which nothing is known, and none at

@@ -124,18 +124,39 @@ impl<'a> Buffers<'a> {
         self.items(accessor, |b| [number(b, 0), number(b, 4), number(b, 8)])
     }
 
-    /// One float an item: times of key frames.
+    /// One float an item: times of key frames, weights.
     pub(super) fn numbers(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<f32>, SceneError> {
         if (accessor.data_type(), accessor.dimensions()) != (DataType::F32, Dimensions::Scalar) {
-            return Err(self.wrong_kind(accessor, "times as 32-bit floats"));
+            return Err(self.wrong_kind(accessor, "32-bit floats"));
         }
         self.items(accessor, |b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
     }
 
-    /// Quaternions x, y, z, w: floats, or shares of the greatest number of 8 or 16 bits.
-    pub(super) fn rotations(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<[f32; 4]>, SceneError> {
+    /// Matrices, column by column.
+    pub(super) fn matrices(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<[f32; 16]>, SceneError> {
+        if (accessor.data_type(), accessor.dimensions()) != (DataType::F32, Dimensions::Mat4) {
+            return Err(self.wrong_kind(accessor, "matrices of 16 floats"));
+        }
+        let number = |b: &[u8], i: usize| f32::from_le_bytes([b[i], b[i + 1], b[i + 2], b[i + 3]]);
+        self.items(accessor, |b| std::array::from_fn(|i| number(b, 4 * i)))
+    }
+
+    /// The joints that a vertex follows, by number in its skin.
+    pub(super) fn joints(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<[u16; 4]>, SceneError> {
+        match (accessor.data_type(), accessor.dimensions()) {
+            (DataType::U8, Dimensions::Vec4) => {
+                self.items(accessor, |b| std::array::from_fn(|i| u16::from(b[i])))
+            }
+            (DataType::U16, Dimensions::Vec4) => self
+                .items(accessor, |b| std::array::from_fn(|i| u16::from_le_bytes([b[2 * i], b[2 * i + 1]]))),
+            _ => Err(self.wrong_kind(accessor, "four joints of 8 or 16 bits")),
+        }
+    }
+
+    /// Quaternions x, y, z, w, or four weights: floats, or shares of the greatest number of 8 or 16 bits.
+    pub(super) fn fours(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<[f32; 4]>, SceneError> {
         if accessor.dimensions() != Dimensions::Vec4 {
-            return Err(self.wrong_kind(accessor, "rotations of four numbers"));
+            return Err(self.wrong_kind(accessor, "four numbers"));
         }
         let four = |part: &dyn Fn(usize) -> f32| [0, 1, 2, 3].map(part);
         let number = |b: &[u8], i: usize| f32::from_le_bytes([b[i], b[i + 1], b[i + 2], b[i + 3]]);
@@ -149,7 +170,7 @@ impl<'a> Buffers<'a> {
             DataType::U16 => self.items(accessor, |b| {
                 four(&|i| f32::from(u16::from_le_bytes([b[2 * i], b[2 * i + 1]])) / 65_535.0)
             }),
-            DataType::U32 => Err(self.wrong_kind(accessor, "rotations of floats or shares of 8 or 16 bits")),
+            DataType::U32 => Err(self.wrong_kind(accessor, "four floats or shares of 8 or 16 bits")),
         }
     }
 

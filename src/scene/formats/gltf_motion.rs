@@ -1,8 +1,8 @@
 //! The animation of a glTF file: nodes that move, turn and are scaled as its channels say (glTF 2.0 sec. 3.11).
 //!
 //! The first animation is played, from its first key frame to its last; glTF asks for no number of frames, so it is
-//! given 30 a second. What moves otherwise, by skins or morph targets, stands still, and other animations are left out,
-//! with a warning each. So is a channel that is not right: the shape is whole without it.
+//! given 30 a second. Other animations are left out, with a warning each, and so is a channel that is not right: the
+//! shape is whole without it. What bends, by skins or morph targets, is read in `gltf_bend.rs`.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use super::super::{Curve, HermiteKey, Motion, Scene, SceneError};
 use super::gltf_buffers::Buffers;
 
 /// Frames a second.
-const RATE: f64 = 30.0;
+pub(super) const RATE: f64 = 30.0;
 
 /// Adds what moves; `placed` are the scene's nodes by the document's, those that are shown.
 pub(super) fn read(
@@ -22,7 +22,6 @@ pub(super) fn read(
     placed: &[Option<u32>],
     scene: &mut Scene,
 ) {
-    warn_of_bends(document, placed, scene);
     let mut animations = document.animations();
     let Some(played) = animations.next() else { return };
     for other in animations {
@@ -33,6 +32,9 @@ pub(super) fn read(
     let (mut start, mut end) = (f64::INFINITY, f64::NEG_INFINITY);
     for channel in played.channels() {
         let target = channel.target();
+        if target.property() == Property::MorphTargetWeights {
+            continue;
+        }
         let Some(node) = placed.get(target.node().index()).copied().flatten() else { continue };
         let mut motion = motions.get(&node).cloned().unwrap_or_else(|| at_rest(&target.node()));
         let read = read_channel(&channel, buffers, &mut motion).map_err(|error| error.to_string());
@@ -60,19 +62,6 @@ pub(super) fn read(
     for (number, (node, motion)) in (0..).zip(motions) {
         animation.followers.push((node, number));
         animation.motions.push(motion);
-    }
-}
-
-fn warn_of_bends(document: &gltf::Document, placed: &[Option<u32>], scene: &mut Scene) {
-    let shown = document.nodes().filter(|node| placed.get(node.index()).is_some_and(Option::is_some));
-    for node in shown.filter(|node| node.skin().is_some()) {
-        let name = node.name().unwrap_or("");
-        scene.warnings.push(format!("node {} {name:?} has a skin, which stands still", node.index()));
-    }
-    for mesh in document.meshes().filter(|mesh| mesh.primitives().any(|part| part.morph_targets().len() > 0))
-    {
-        let name = mesh.name().unwrap_or("");
-        scene.warnings.push(format!("mesh {} {name:?} has morph targets, which stand still", mesh.index()));
     }
 }
 
@@ -107,18 +96,18 @@ fn read_channel(
         Property::Translation => motion.translation = Some(vectors()?),
         Property::Scale => motion.scale = Some(vectors()?),
         Property::Rotation => {
-            let values = buffers.rotations(&output)?.into_iter().map(Quat::from_array).collect::<Vec<_>>();
+            let values = buffers.fours(&output)?.into_iter().map(Quat::from_array).collect::<Vec<_>>();
             buffers.check_keys(&output, kind, &times, values.len())?;
             motion.rotation = Some(curve(kind, &times, &values));
         }
-        // Told of already.
+        // They bend the mesh and leave its node.
         Property::MorphTargetWeights => {}
     }
     Ok(times)
 }
 
 /// The curve through values, one for each time, or three: the slope come to it with, itself, the slope it is left with.
-fn curve<T: Copy>(kind: Interpolation, times: &[f32], values: &[T]) -> Curve<T> {
+pub(super) fn curve<T: Copy>(kind: Interpolation, times: &[f32], values: &[T]) -> Curve<T> {
     let times = times.iter().map(|time| f64::from(*time));
     let pairs = || times.clone().zip(values.iter().copied()).collect();
     match kind {
@@ -139,4 +128,4 @@ fn curve<T: Copy>(kind: Interpolation, times: &[f32], values: &[T]) -> Curve<T> 
 
 #[cfg(test)]
 #[path = "gltf_motion_tests.rs"]
-mod tests;
+pub(super) mod tests;

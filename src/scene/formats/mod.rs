@@ -7,6 +7,7 @@ use super::{Scene, SceneError};
 
 mod base64;
 mod gltf;
+mod gltf_bend;
 mod gltf_buffers;
 mod gltf_look;
 mod gltf_motion;

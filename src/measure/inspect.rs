@@ -43,6 +43,15 @@ pub fn scene(name: &str) -> Result<String, MeasureError> {
         "seen with",
         format!("{} materials, {} textures, {} lights", holds.materials, holds.textures, holds.lights),
     );
+    if !scene.animation.is_still() {
+        line(
+            "moves",
+            format!(
+                "{} nodes and {} meshes of {} triangles, {:.1} s in {} frames",
+                holds.moving, holds.bending, holds.bending_triangles, holds.seconds, holds.frames
+            ),
+        );
+    }
     scene.warnings.iter().for_each(|warning| line("not there", warning.clone()));
     match (holds.bounds_min, holds.bounds_max) {
         (Some(min), Some(max)) => line("bounds", format!("{min:?} to {max:?}")),

@@ -35,11 +35,22 @@ pub struct Description {
     pub textures: usize,
     /// Lights.
     pub lights: usize,
+    /// How many frames whoever animated it asks for; 0 if nothing moves.
+    pub frames: u32,
+    /// How long its animation is, in seconds.
+    pub seconds: f64,
+    /// Nodes that follow a motion.
+    pub moving: usize,
+    /// Meshes that change shape.
+    pub bending: usize,
+    /// Their triangles, each mesh once.
+    pub bending_triangles: usize,
     /// Least corner of the world, in metres; absent if there is nothing in it.
     pub bounds_min: Option<[f32; 3]>,
     /// Greatest corner of the world, in metres; absent if there is nothing in it.
     pub bounds_max: Option<[f32; 3]>,
-    /// Bytes of vertices, triangles, nodes, primitives and what they are seen with in memory, without names.
+    /// Bytes of vertices, triangles, nodes, primitives, key frames and what they are seen with in memory, without
+    /// names.
     pub bytes: usize,
     /// How skinny half of the triangles are at most: longest edge over the height on it, 1.15 for an
     /// equilateral one. In the world, triangles without area left out; 0 if there are none.
@@ -61,6 +72,8 @@ pub fn describe(scene: &Scene) -> Description {
     let bounds = Some(scene.bounds()).filter(|bounds| !bounds.is_empty());
     let unique_triangles = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
     let vertices: usize = scene.meshes.iter().map(|mesh| mesh.positions.len()).sum();
+    let bent = scene.animation.bends.iter().map(|bend| &scene.meshes[bend.mesh as usize]);
+    let bending_triangles = bent.map(|mesh| mesh.triangles.len()).sum();
     let aspects = aspects(scene);
     let percentile = |share: f64| match aspects.len() {
         0 => 0.0,
@@ -81,6 +94,11 @@ pub fn describe(scene: &Scene) -> Description {
         materials: scene.materials.len(),
         textures: scene.textures.len(),
         lights: scene.lights.len(),
+        frames: scene.animation.frames,
+        seconds: scene.animation.end - scene.animation.start,
+        moving: scene.animation.followers.len(),
+        bending: scene.animation.bends.len(),
+        bending_triangles,
         bounds_min: bounds.map(|bounds| bounds.min.to_array()),
         bounds_max: bounds.map(|bounds| bounds.max.to_array()),
         bytes: 12 * (vertices + unique_triangles)
@@ -88,7 +106,8 @@ pub fn describe(scene: &Scene) -> Description {
             + size_of::<Node>() * scene.nodes.len()
             + size_of::<Primitive>() * scene.primitives.len()
             + scene.meshes.iter().map(shading_bytes).sum::<usize>()
-            + scene.textures.iter().map(|texture| 3 * texture.pixels.len()).sum::<usize>(),
+            + scene.textures.iter().map(|texture| 3 * texture.pixels.len()).sum::<usize>()
+            + scene.animation.bytes(),
         aspect_p50: percentile(0.5),
         aspect_p90: percentile(0.9),
         aspect_p99: percentile(0.99),

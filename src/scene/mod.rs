@@ -20,7 +20,7 @@ mod shading;
 mod source;
 mod validate;
 
-pub use animation::{Animation, Bend, BendKey, Curve, HermiteKey, Motion, SplineKey};
+pub use animation::{Animation, Bend, BendKey, Bent, Curve, HermiteKey, Motion, Pose, SplineKey};
 pub use cache::{Cache, Origin};
 pub use describe::{Description, describe};
 pub use error::SceneError;

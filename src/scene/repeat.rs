@@ -2,11 +2,11 @@
 
 use glam::{Affine3A, Vec3};
 
-use super::{PointLight, Primitive, Scene};
+use super::{Animation, PointLight, Primitive, Scene};
 
 impl Scene {
     /// So many copies of the scene on a level grid as near to a square as can be, row after row. They
-    /// share their meshes, and bring their lights. `spacing` is the way from copy to copy in units of the scene's greater extent
+    /// share their meshes, bring their lights, and move all in step. `spacing` is the way from copy to copy in units of the scene's greater extent
     /// along x and z: at 1 they touch. It goes by another name, as it is another scene; one copy is the
     /// scene itself.
     pub fn repeated(self, copies: u32, spacing: f32) -> Self {
@@ -16,10 +16,14 @@ impl Scene {
         let size = self.bounds().size();
         let (pitch, columns) = (size.x.max(size.z) * spacing, f64::from(copies).sqrt().ceil() as u32);
         let mut scene = Self::new(format!("{copies} x {}", self.name));
+        let (mut followers, mut lights) = (Vec::new(), Vec::new());
         for copy in 0..copies {
             let place = Vec3::new((copy % columns) as f32, 0.0, (copy / columns) as f32) * pitch;
             let root = scene.add_node(None, format!("copy {copy}"), Affine3A::from_translation(place), None);
-            let first = scene.nodes.len() as u32;
+            let (first, first_light) = (scene.nodes.len() as u32, scene.lights.len() as u32);
+            let animation = &self.animation;
+            followers.extend(animation.followers.iter().map(|(node, motion)| (node + first, *motion)));
+            lights.extend(animation.lights.iter().map(|(light, motion)| (light + first_light, *motion)));
             scene.nodes[root as usize].children = self.roots.iter().map(|node| node + first).collect();
             scene.nodes.extend(self.nodes.iter().map(|node| {
                 let mut node = node.clone();
@@ -32,10 +36,10 @@ impl Scene {
                     .iter()
                     .map(|primitive| Primitive { shape: primitive.shape.moved(place), ..*primitive }),
             );
-            let lights = self.lights.iter();
+            let standing = self.lights.iter();
             scene
                 .lights
-                .extend(lights.map(|light| PointLight { position: light.position + place, ..*light }));
+                .extend(standing.map(|light| PointLight { position: light.position + place, ..*light }));
         }
         Self {
             meshes: self.meshes,
@@ -44,6 +48,7 @@ impl Scene {
             warnings: self.warnings,
             // That of one copy, which would show some of the others by chance, is none of all.
             view: None,
+            animation: Animation { followers, lights, camera: None, ..self.animation },
             ..scene
         }
     }
@@ -51,7 +56,7 @@ impl Scene {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Mesh, by_name};
+    use super::super::{Curve, Mesh, Motion, by_name};
     use super::*;
 
     #[test]
@@ -79,5 +84,31 @@ mod tests {
         let mesh = point.add_mesh(Mesh::new("point", vec![Vec3::ONE; 3], vec![[0, 1, 2]]));
         point.add_node(None, "point", Affine3A::IDENTITY, Some(mesh));
         point.repeated(4, 2.0).validate().unwrap();
+    }
+
+    #[test]
+    fn copies_move_in_step() {
+        let mut scene = Scene::new("lift");
+        let mesh = scene.add_mesh(Mesh::new("m", vec![Vec3::ZERO, Vec3::X, Vec3::Z], vec![[0, 1, 2]]));
+        scene.add_node(None, "cage", Affine3A::IDENTITY, Some(mesh));
+        scene.lights = vec![PointLight { position: Vec3::X, colour: Vec3::ONE }];
+        let rise = Some(Curve::Linear(vec![(0.0, Vec3::ZERO), (1.0, Vec3::Y * 3.0)]));
+        scene.animation = Animation {
+            motions: vec![Motion { translation: rise, ..Motion::default() }],
+            followers: vec![(0, 0)],
+            lights: vec![(0, 0)],
+            camera: Some(0),
+            ..Animation::default()
+        };
+        let one = scene.pose(0.5);
+        let many = scene.repeated(3, 2.0);
+        many.validate().unwrap();
+        let (rest, pose) = (many.pose(0.0), many.pose(0.5));
+        for copy in 0..3 {
+            let (stands, cage) = (rest.world[2 * copy + 1].translation, pose.world[2 * copy + 1].translation);
+            assert_eq!(cage, stands + one.world[0].translation, "copy {copy}");
+            assert_eq!(pose.lights[copy].position, rest.lights[copy].position + Vec3::Y * 1.5);
+        }
+        assert_eq!((pose.view, many.animation.motions.len()), (None, 1));
     }
 }

@@ -3,8 +3,8 @@
 use super::{Scene, SceneError};
 
 impl Scene {
-    /// Checks that the graph is a forest, that all indices are in range, and that all numbers are
-    /// finite, in the world as well.
+    /// Checks that the graph is a forest, that all indices are in range, that key frames are in order, and that all
+    /// numbers are finite, in the world as well.
     ///
     /// # Errors
     /// [`SceneError::Malformed`] naming the first node or mesh that is not right.
@@ -18,6 +18,7 @@ impl Scene {
         self.check_shading(file)?;
         self.check_nodes(file)?;
         self.check_forest(file)?;
+        self.check_animation(file)?;
         for (index, bounds) in self.world_bounds().into_iter().enumerate() {
             let finite = bounds.min.is_finite() && bounds.max.is_finite();
             if !finite && !bounds.is_empty() {

@@ -1,9 +1,13 @@
-//! Medians, and how sure one can be of them.
+//! Medians, and how sure one can be of them; what an animation's frames took; how far a picture is off.
 //!
 //! They stand here and not in `measure`, because the report summarises rows too and sees nothing but this room.
 
+mod frames;
+mod picture;
 mod shift;
 
+pub use frames::FrameTimes;
+pub use picture::{average_pnsr, error_free_pnsr, least_error_pnsr, mean_square_error, pnsr};
 pub use shift::{blocks, shift};
 
 /// How many times the bootstrap draws; the interval's ends move by under 1 % of its width beyond this.

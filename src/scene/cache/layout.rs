@@ -9,6 +9,7 @@
 //! nodes:   name, parent u32, mesh u32, children u32, transform 12 f32
 //! meshes:  name, positions 3 f32, triangles 3 u32, shading (`look.rs`)
 //! materials, textures, lights, primitives, warnings (`look.rs`)
+//! animation (`motion.rs`)
 //! checksum u32 (CRC-32 of all before it)
 //! ```
 
@@ -17,13 +18,13 @@ use std::time::{Duration, SystemTime};
 
 use glam::{Affine3A, Vec3};
 
-use super::look;
+use super::{look, motion};
 use crate::scene::source::Stamp;
 use crate::scene::{Mesh, Node, Scene};
 
 const MAGIC: &[u8] = b"apportion scene\n";
 /// To be raised whenever this layout changes, or a reader comes to read a file otherwise than before.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Stands for no node and for no mesh.
 const NONE: u32 = u32::MAX;
 
@@ -64,6 +65,7 @@ pub(super) fn encode(path: &Path, stamps: &[Stamp], scene: &Scene) -> Option<Vec
         look::put_shading(&mut out, &mesh.shading)?;
     }
     look::put_scene(&mut out, scene)?;
+    motion::put_animation(&mut out, &scene.animation)?;
     let checksum = crc32fast::hash(&out);
     out.extend(checksum.to_le_bytes());
     Some(out)
@@ -110,6 +112,7 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Option<(Vec<Stamp>, Scene)> {
     let nodes = from.list(Reader::node)?;
     let meshes = from.list(Reader::mesh)?;
     let scene = look::read_scene(&mut from, Scene { nodes, meshes, roots, ..Scene::default() })?;
+    let scene = Scene { animation: motion::read_animation(&mut from)?, ..scene };
     from.rest.is_empty().then_some((stamps, scene))
 }
 
@@ -124,7 +127,12 @@ impl<'a> Reader<'a> {
         self.array().map(f32::from_le_bytes)
     }
 
-    /// Three of them.
+    /// A time in seconds: 64 bits, any.
+    pub(super) fn time(&mut self) -> Option<f64> {
+        self.array().map(f64::from_le_bytes)
+    }
+
+    /// Three numbers of 32 bits.
     pub(super) fn vector(&mut self) -> Option<Vec3> {
         Some(Vec3::new(self.number()?, self.number()?, self.number()?))
     }

@@ -27,6 +27,7 @@ use super::{Scene, SceneError};
 
 mod layout;
 mod look;
+mod motion;
 
 /// The variable that names a folder for the cache, or switches it off.
 const VARIABLE: &str = "APPORTION_CACHE";

@@ -233,5 +233,39 @@ fn be_seen(scene: &mut Scene) {
     ];
     scene.view = Some(View { eye: Vec3::X, look: Vec3::Y, up: Vec3::Z, fov_y: 0.5 });
     scene.warnings.push("something is not there".into());
+    move_about(scene);
     scene.validate().unwrap();
+}
+
+/// Gives a scene with a light and a mesh some of every movement.
+fn move_about(scene: &mut Scene) {
+    use super::super::{Animation, Bend, BendKey, Curve, HermiteKey, Motion, SplineKey};
+    use glam::{Quat, Vec3};
+    let key = |at: u8| SplineKey {
+        time: f64::from(at),
+        value: Quat::from_xyzw(0.5, -0.5, 0.5, 0.5),
+        tension: 0.1,
+        continuity: 0.2,
+        bias: -0.3,
+    };
+    let hermite = HermiteKey { time: -1.0, value: Vec3::ONE, arriving: Vec3::X, leaving: Vec3::Y };
+    let first = Motion {
+        name: "first".into(),
+        translation: Some(Curve::Linear(vec![(0.1, Vec3::X), (0.2, -Vec3::ZERO)])),
+        rotation: Some(Curve::Spline((0..4).map(key).collect())),
+        scale: Some(Curve::Hermite(vec![hermite])),
+        visibility: vec![(0.5, true), (0.7, false)],
+    };
+    let second = Motion { rotation: Some(Curve::Steps(vec![(3.0, Quat::IDENTITY)])), ..Motion::default() };
+    let bend = BendKey { time: 2.0, positions: vec![Vec3::X; 3], normals: vec![Vec3::Z; 3] };
+    scene.animation = Animation {
+        start: -0.5,
+        end: 2.0,
+        frames: 9,
+        motions: vec![first, second],
+        followers: vec![(1, 0)],
+        camera: Some(1),
+        lights: vec![(0, 0)],
+        bends: vec![Bend { mesh: 0, keys: vec![bend] }],
+    };
 }

@@ -1,7 +1,8 @@
 //! glTF 2.0, as text or binary: the node hierarchy and the triangles; nodes that share a mesh go on
 //! sharing it. Of a mesh's primitives those made of triangles (lists, strips, fans) become one mesh;
 //! points and lines have no surface and are left out. Normals, the first texture coordinates and
-//! materials are read; skins, morphs and animation are not. Quantised, sparse or compressed vertices are refused.
+//! materials are read, how nodes move (`gltf_motion.rs`) and meshes bend (`gltf_bend.rs`). Quantised, sparse or compressed
+//! vertices are refused.
 
 use std::collections::HashMap;
 
@@ -10,8 +11,9 @@ use gltf::mesh::Mode;
 
 use super::super::source::Source;
 use super::super::{Corners, Materials, Mesh, Scene, SceneError, Shading};
+use super::gltf_bend::{self, Block};
 use super::gltf_buffers::Buffers;
-use super::gltf_look;
+use super::{gltf_look, gltf_motion};
 
 /// Reads the default scene of a document, or its first, or, if it declares none, all its nodes.
 pub(super) fn load(source: &Source) -> Result<Scene, SceneError> {
@@ -28,11 +30,15 @@ pub(super) fn load(source: &Source) -> Result<Scene, SceneError> {
     let buffers = Buffers::read(source, &document, gltf.blob)?;
     let mut scene = Scene::new(file);
     gltf_look::read(source, &document, &buffers, &mut scene);
+    let mut blocks = Vec::new();
     for mesh in document.meshes() {
-        let mesh = read_mesh(file, &buffers, &mesh, &mut scene.warnings)?;
+        let (mesh, of_mesh) = read_mesh(file, &buffers, &mesh, &mut scene.warnings)?;
         scene.meshes.push(mesh);
+        blocks.push(of_mesh);
     }
-    add_nodes(file, &document, &mut scene)?;
+    let placed = add_nodes(file, &document, &mut scene)?;
+    gltf_motion::read(&document, &buffers, &placed, &mut scene);
+    gltf_bend::read(&document, &buffers, &placed, &blocks, &mut scene);
     Ok(scene)
 }
 
@@ -70,14 +76,16 @@ fn check_positions(file: &str, json: &gltf::json::Root) -> Result<(), SceneError
     Ok(())
 }
 
+/// Reads a mesh; tells which vertices came with which of its primitives.
 fn read_mesh(
     file: &str,
     buffers: &Buffers<'_>,
     mesh: &gltf::Mesh<'_>,
     warnings: &mut Vec<String>,
-) -> Result<Mesh, SceneError> {
+) -> Result<(Mesh, Vec<Block>), SceneError> {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     let (mut normals, mut coordinates, mut materials) = (Vec::new(), Vec::new(), Vec::new());
+    let mut blocks = Vec::new();
     // Primitives often share their vertices, one for each material.
     let mut first_of: HashMap<[Option<usize>; 3], (u32, usize)> = HashMap::new();
     for primitive in mesh.primitives() {
@@ -107,6 +115,8 @@ fn read_mesh(
                 extend(&mut normals, read, positions.len(), placed.1, warnings);
                 let read = coordinate.map(|coordinate| buffers.coordinates(&coordinate));
                 extend(&mut coordinates, read, positions.len(), placed.1, warnings);
+                let first = positions.len() - placed.1;
+                blocks.push(Block { primitive: primitive.index(), first, count: placed.1 });
                 first_of.insert(key, placed);
                 placed
             }
@@ -133,7 +143,7 @@ fn read_mesh(
         normals: corners(normals),
         coordinates: Corners::of_vertices(coordinates.into_iter().map(Vec2::from).collect()),
     };
-    Ok(Mesh { shading, ..Mesh::new(mesh.name().unwrap_or(""), positions, triangles) })
+    Ok((Mesh { shading, ..Mesh::new(mesh.name().unwrap_or(""), positions, triangles) }, blocks))
 }
 
 /// Adds what shading knows of the last `count` of `vertices` vertices: 0 for those of which nothing is known, and none at
@@ -175,8 +185,13 @@ fn assemble(mode: Mode, indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     })
 }
 
-/// Adds the nodes of the scene that is shown, each after its parent, in the document's order of children.
-fn add_nodes(file: &str, document: &gltf::Document, scene: &mut Scene) -> Result<(), SceneError> {
+/// Adds the nodes of the scene that is shown, each after its parent, in the document's order of children; tells which
+/// one each of the document's became.
+fn add_nodes(
+    file: &str,
+    document: &gltf::Document,
+    scene: &mut Scene,
+) -> Result<Vec<Option<u32>>, SceneError> {
     let roots: Vec<gltf::Node<'_>> = match document.default_scene().or_else(|| document.scenes().next()) {
         Some(shown) => shown.nodes().collect(),
         None => {
@@ -187,11 +202,11 @@ fn add_nodes(file: &str, document: &gltf::Document, scene: &mut Scene) -> Result
             document.nodes().filter(|node| !is_child[node.index()]).collect()
         }
     };
-    let mut reached = vec![false; document.nodes().len()];
+    let mut placed = vec![None; document.nodes().len()];
     let mut stack: Vec<_> = roots.into_iter().rev().map(|root| (None, root)).collect();
     while let Some((parent, node)) = stack.pop() {
         let name = node.name().unwrap_or("");
-        if std::mem::replace(&mut reached[node.index()], true) {
+        if placed[node.index()].is_some() {
             let place = format!("node {} {name:?}", node.index());
             let expected = "a tree: one way to each node, no cycle";
             return Err(SceneError::malformed(file, place, "it is reached twice", expected));
@@ -199,10 +214,11 @@ fn add_nodes(file: &str, document: &gltf::Document, scene: &mut Scene) -> Result
         let matrix = Mat4::from_cols_array_2d(&node.transform().matrix());
         let mesh = node.mesh().map(|mesh| mesh.index() as u32);
         let index = scene.add_node(parent, name, Affine3A::from_mat4(matrix), mesh);
+        placed[node.index()] = Some(index);
         let children: Vec<_> = node.children().collect();
         stack.extend(children.into_iter().rev().map(|child| (Some(index), child)));
     }
-    Ok(())
+    Ok(placed)
 }
 
 #[cfg(test)]

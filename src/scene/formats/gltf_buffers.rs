@@ -124,6 +124,77 @@ impl<'a> Buffers<'a> {
         self.items(accessor, |b| [number(b, 0), number(b, 4), number(b, 8)])
     }
 
+    /// One float an item: times of key frames, weights.
+    pub(super) fn numbers(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<f32>, SceneError> {
+        if (accessor.data_type(), accessor.dimensions()) != (DataType::F32, Dimensions::Scalar) {
+            return Err(self.wrong_kind(accessor, "32-bit floats"));
+        }
+        self.items(accessor, |b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+    }
+
+    /// Matrices, column by column.
+    pub(super) fn matrices(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<[f32; 16]>, SceneError> {
+        if (accessor.data_type(), accessor.dimensions()) != (DataType::F32, Dimensions::Mat4) {
+            return Err(self.wrong_kind(accessor, "matrices of 16 floats"));
+        }
+        let number = |b: &[u8], i: usize| f32::from_le_bytes([b[i], b[i + 1], b[i + 2], b[i + 3]]);
+        self.items(accessor, |b| std::array::from_fn(|i| number(b, 4 * i)))
+    }
+
+    /// The joints that a vertex follows, by number in its skin.
+    pub(super) fn joints(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<[u16; 4]>, SceneError> {
+        match (accessor.data_type(), accessor.dimensions()) {
+            (DataType::U8, Dimensions::Vec4) => {
+                self.items(accessor, |b| std::array::from_fn(|i| u16::from(b[i])))
+            }
+            (DataType::U16, Dimensions::Vec4) => self
+                .items(accessor, |b| std::array::from_fn(|i| u16::from_le_bytes([b[2 * i], b[2 * i + 1]]))),
+            _ => Err(self.wrong_kind(accessor, "four joints of 8 or 16 bits")),
+        }
+    }
+
+    /// Quaternions x, y, z, w, or four weights: floats, or shares of the greatest number of 8 or 16 bits.
+    pub(super) fn fours(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<[f32; 4]>, SceneError> {
+        if accessor.dimensions() != Dimensions::Vec4 {
+            return Err(self.wrong_kind(accessor, "four numbers"));
+        }
+        let four = |part: &dyn Fn(usize) -> f32| [0, 1, 2, 3].map(part);
+        let number = |b: &[u8], i: usize| f32::from_le_bytes([b[i], b[i + 1], b[i + 2], b[i + 3]]);
+        match accessor.data_type() {
+            DataType::F32 => self.items(accessor, |b| four(&|i| number(b, 4 * i))),
+            DataType::I8 => self.items(accessor, |b| four(&|i| (f32::from(b[i] as i8) / 127.0).max(-1.0))),
+            DataType::U8 => self.items(accessor, |b| four(&|i| f32::from(b[i]) / 255.0)),
+            DataType::I16 => self.items(accessor, |b| {
+                four(&|i| (f32::from(i16::from_le_bytes([b[2 * i], b[2 * i + 1]])) / 32_767.0).max(-1.0))
+            }),
+            DataType::U16 => self.items(accessor, |b| {
+                four(&|i| f32::from(u16::from_le_bytes([b[2 * i], b[2 * i + 1]])) / 65_535.0)
+            }),
+            DataType::U32 => Err(self.wrong_kind(accessor, "four floats or shares of 8 or 16 bits")),
+        }
+    }
+
+    /// Checks that there are as many values as key frames ask for.
+    pub(super) fn check_keys(
+        &self,
+        accessor: &gltf::Accessor<'_>,
+        kind: gltf::animation::Interpolation,
+        times: &[f32],
+        values: usize,
+    ) -> Result<(), SceneError> {
+        let each = if kind == gltf::animation::Interpolation::CubicSpline { 3 } else { 1 };
+        if times.len().checked_mul(each) == Some(values) {
+            return Ok(());
+        }
+        let (place, found) = (format!("accessor {}", accessor.index()), format!("{values} values"));
+        Err(SceneError::malformed(
+            self.file,
+            place,
+            found,
+            format!("{each} for each of {} times", times.len()),
+        ))
+    }
+
     /// Vertex indices, of any width.
     pub(super) fn indices(&self, accessor: &gltf::Accessor<'_>) -> Result<Vec<u32>, SceneError> {
         match (accessor.data_type(), accessor.dimensions()) {

@@ -7,8 +7,10 @@ use super::{Scene, SceneError};
 
 mod base64;
 mod gltf;
+mod gltf_bend;
 mod gltf_buffers;
 mod gltf_look;
+mod gltf_motion;
 mod mtl;
 mod obj;
 mod obj_check;

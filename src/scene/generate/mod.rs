@@ -2,6 +2,7 @@
 
 use super::{Scene, SceneError, names};
 
+mod bart;
 mod cloth;
 mod corner;
 mod cylinders;
@@ -92,6 +93,24 @@ pub const GENERATORS: &[Generator] = &[
     cylinders::SIDES_500,
     cylinders::SIDES_1000,
     cylinders::SIDES_5000,
+    bart::K3,
+    bart::K4,
+    bart::K5,
+    bart::K6,
+    bart::K7,
+    bart::K8,
+    bart::ROBOTS,
+    bart::KITCHEN,
+    bart::ONE,
+    bart::TWO,
+    bart::THREE,
+    bart::FOUR,
+    bart::FIVE,
+    bart::SIX,
+    bart::SEVEN,
+    bart::EIGHT,
+    bart::NINE,
+    bart::TEN,
 ];
 
 /// Makes a scene by its name.

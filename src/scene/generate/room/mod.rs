@@ -9,7 +9,7 @@ use super::super::{Material, Materials, Mesh, PointLight, Scene, SplitMix64, Vie
 use super::place::turned_y;
 use super::{Aisles, Generator, cuboid, cylinder};
 
-mod parts;
+pub(super) mod parts;
 
 /// "75,000 polygons" (Parker et al. sec. 4).
 const TRIANGLES: usize = 75_000;

@@ -9,7 +9,7 @@ use crate::scene::generate::geodesic;
 use crate::scene::{Corners, Mesh, SplitMix64, Texture};
 
 /// Outlines from the axis outward and up, as (radius, height) in metres.
-pub(super) const POT: [(f64, f64); 10] = [
+pub(in crate::scene::generate) const POT: [(f64, f64); 10] = [
     (0.0, 0.0),
     (0.07, 0.0),
     (0.12, 0.05),
@@ -22,7 +22,7 @@ pub(super) const POT: [(f64, f64); 10] = [
     (0.0, 0.22),
 ];
 /// A vase, open at the top, with an inside.
-pub(super) const VASE: [(f64, f64); 9] = [
+pub(in crate::scene::generate) const VASE: [(f64, f64); 9] = [
     (0.0, 0.0),
     (0.05, 0.0),
     (0.06, 0.06),
@@ -34,13 +34,14 @@ pub(super) const VASE: [(f64, f64); 9] = [
     (0.0, 0.01),
 ];
 /// The stand of a lamp.
-pub(super) const STAND: [(f64, f64); 7] =
+pub(in crate::scene::generate) const STAND: [(f64, f64); 7] =
     [(0.0, 0.0), (0.16, 0.0), (0.15, 0.02), (0.02, 0.05), (0.015, 0.6), (0.015, 1.4), (0.0, 1.41)];
 /// Its shade, open at both ends.
-pub(super) const SHADE: [(f64, f64); 4] = [(0.24, 1.25), (0.12, 1.6), (0.117, 1.6), (0.237, 1.25)];
+pub(in crate::scene::generate) const SHADE: [(f64, f64); 4] =
+    [(0.24, 1.25), (0.12, 1.6), (0.117, 1.6), (0.237, 1.25)];
 
 /// An outline turned about the y axis, each of its pieces cut into `cuts` along a smooth curve through its corners.
-pub(super) fn lathe(name: &str, outline: &[(f64, f64)], sides: u32, cuts: u32) -> Mesh {
+pub(in crate::scene::generate) fn lathe(name: &str, outline: &[(f64, f64)], sides: u32, cuts: u32) -> Mesh {
     let point = |at: i64| {
         let (radius, height) = outline[at.clamp(0, outline.len() as i64 - 1) as usize];
         DVec3::new(radius, height, 0.0)
@@ -81,14 +82,14 @@ pub(super) fn lathe(name: &str, outline: &[(f64, f64)], sides: u32, cuts: u32) -
 }
 
 /// A ball standing at its middle.
-pub(super) fn ball(radius: f64, frequency: u32) -> Mesh {
+pub(in crate::scene::generate) fn ball(radius: f64, frequency: u32) -> Mesh {
     let mut mesh = geodesic("ball", radius, frequency);
     mesh.shading.normals = Corners::of_vertices(mesh.positions.clone());
     mesh
 }
 
 /// A rectangle from its corners, lower left first, anticlockwise; its texture so many times across and up.
-pub(super) fn sheet(name: &str, corners: [Vec3; 4], times: [f32; 2]) -> Mesh {
+pub(in crate::scene::generate) fn sheet(name: &str, corners: [Vec3; 4], times: [f32; 2]) -> Mesh {
     let mut mesh = Mesh::new(name, corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]);
     let [across, up] = times;
     let at = [(0.0, up), (across, up), (across, 0.0), (0.0, 0.0)].map(|(u, v)| Vec2::new(u, v));
@@ -97,7 +98,7 @@ pub(super) fn sheet(name: &str, corners: [Vec3; 4], times: [f32; 2]) -> Mesh {
 }
 
 /// A deep carpet of exactly `count` triangles, which must be even: rows of cells, the last as long as it comes.
-pub(super) fn carpet(length: f32, width: f32, count: usize) -> Mesh {
+pub(in crate::scene::generate) fn carpet(length: f32, width: f32, count: usize) -> Mesh {
     assert!(count.is_multiple_of(2), "cells have two triangles");
     let cells = count / 2;
     let columns = ((cells as f32 * length / width).sqrt() as usize).max(1);
@@ -124,7 +125,7 @@ fn smooth(mut mesh: Mesh) -> Mesh {
 }
 
 /// Floor boards.
-pub(super) fn boards() -> Texture {
+pub(in crate::scene::generate) fn boards() -> Texture {
     picture("boards", 256, 256, |x, y| {
         let board = (x / 32) as f64;
         let shift = lattice(DVec3::new(board, 7.0, 0.0)) * 128.0;
@@ -136,7 +137,7 @@ pub(super) fn boards() -> Texture {
 }
 
 /// Hills under a sun.
-pub(super) fn painting() -> Texture {
+pub(in crate::scene::generate) fn painting() -> Texture {
     let mut random = SplitMix64::new(16);
     let hills: Vec<f64> = (0..4).map(|_| random.between(0.0, 50.0)).collect();
     picture("painting", 384, 256, |x, y| {

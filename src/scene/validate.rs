@@ -93,7 +93,11 @@ impl Scene {
             }
         }
         if let Some(bad) = [self.background, self.ambient].into_iter().flatten().find(|c| !c.is_finite()) {
-            return fail("background or ambient light".to_owned(), bad.to_string(), "finite numbers".to_owned());
+            return fail(
+                "background or ambient light".to_owned(),
+                bad.to_string(),
+                "finite numbers".to_owned(),
+            );
         }
         for (index, texture) in self.textures.iter().enumerate() {
             let pixels = texture.width as usize * texture.height as usize;

@@ -21,6 +21,8 @@ pub(super) struct Faces {
     still: Option<u32>,
     /// Of what moves.
     moving: Option<u32>,
+    /// Polygons whose outline crosses itself.
+    crossed: usize,
     /// The looks of `still`, by what they are.
     looks: HashMap<(Option<[u32; 13]>, Option<String>), u32>,
 }
@@ -55,7 +57,7 @@ impl Faces {
             let most = polygon::MOST_CONCAVE;
             Fault::new(at, format!("{count} corners that are not convex"), format!("at most {most} of such"))
         })?;
-        parsed.crossed += usize::from(is_crossed);
+        self.crossed += usize::from(is_crossed);
         let number = self.still(parsed);
         let patch = &mut parsed.patches[number as usize];
         let look = self.look(look, patch);
@@ -130,6 +132,11 @@ impl Faces {
             self.looks.clear();
         }
         self.end_moving(parsed);
+        let crossed = std::mem::take(&mut self.crossed);
+        if crossed > 0 {
+            let told = format!("{crossed} polygons of {:?} cross themselves: cut up anyhow", parsed.stem);
+            parsed.warnings.push(told);
+        }
     }
 
     fn end_moving(&mut self, parsed: &mut Parsed) {

@@ -11,11 +11,12 @@ const LEAST_KEYS: u32 = 4;
 /// The least a key takes: a time, a value, a blank after each.
 const KEY: usize = 4;
 
-/// Reads a name and the lists of keys in its braces.
-pub(super) fn read(words: &mut Words<'_>) -> Result<Motion, Fault> {
+/// Reads a name and the lists of keys in its braces. Keys that are earlier than one before them can be reached at no
+/// time, as one of BART's own files has them: they are left out, with a warning.
+pub(super) fn read(words: &mut Words<'_>, warnings: &mut Vec<String>) -> Result<Motion, Fault> {
     let mut motion = Motion { name: words.name("the name of what moves")?.to_owned(), ..Motion::default() };
     words.expect("{")?;
-    let mut is_visibility_told = false;
+    let (mut is_visibility_told, mut late) = (false, 0);
     loop {
         let twice = |words: &Words<'_>| Err(words.wrong("each kind of keys once"));
         match words.next() {
@@ -23,17 +24,21 @@ pub(super) fn read(words: &mut Words<'_>) -> Result<Motion, Fault> {
             Some(b"scale") if motion.scale.is_some() => return twice(words),
             Some(b"rot") if motion.rotation.is_some() => return twice(words),
             Some(b"visibility") if is_visibility_told => return twice(words),
-            Some(b"transl") => motion.translation = Some(spline(words, Words::vector)?),
-            Some(b"scale") => motion.scale = Some(spline(words, Words::vector)?),
-            Some(b"rot") => motion.rotation = Some(spline(words, turn)?),
+            Some(b"transl") => motion.translation = Some(spline(words, Words::vector, &mut late)?),
+            Some(b"scale") => motion.scale = Some(spline(words, Words::vector, &mut late)?),
+            Some(b"rot") => motion.rotation = Some(spline(words, turn, &mut late)?),
             Some(b"visibility") => {
                 motion.visibility = visibility(words)?;
                 is_visibility_told = true;
             }
-            Some(b"}") => return Ok(motion),
+            Some(b"}") => break,
             _ => return Err(words.wrong("`transl`, `scale`, `rot`, `visibility` or `}`")),
         }
     }
+    if late > 0 {
+        warnings.push(format!("{late} keys of {:?} are earlier than one before them: left out", motion.name));
+    }
+    Ok(motion)
 }
 
 /// Rounded as it is, so that more than half a turn stays more.
@@ -44,6 +49,7 @@ fn turn(words: &mut Words<'_>) -> Result<Quat, Fault> {
 fn spline<'a, T>(
     words: &mut Words<'a>,
     value: impl Fn(&mut Words<'a>) -> Result<T, Fault>,
+    late: &mut usize,
 ) -> Result<Curve<T>, Fault> {
     let (count, room) = words.count(KEY)?;
     if count < LEAST_KEYS {
@@ -51,15 +57,22 @@ fn spline<'a, T>(
     }
     let mut keys: Vec<SplineKey<T>> = Vec::with_capacity(room);
     for _ in 0..count {
-        keys.push(SplineKey {
-            time: time(words, keys.last().map(|key| key.time))?,
+        let key = SplineKey {
+            time: words.double()?,
             value: value(words)?,
             tension: words.number()?,
             continuity: words.number()?,
             bias: words.number()?,
-        });
+        };
+        match keys.last().is_some_and(|last| key.time < last.time) {
+            true => *late += 1,
+            false => keys.push(key),
+        }
     }
-    Ok(Curve::Spline(keys))
+    match keys.len() < LEAST_KEYS as usize {
+        true => Err(words.wrong(format!("at least {LEAST_KEYS} keys in the order of their times before it"))),
+        false => Ok(Curve::Spline(keys)),
+    }
 }
 
 fn visibility(words: &mut Words<'_>) -> Result<Vec<(f64, bool)>, Fault> {

@@ -49,4 +49,6 @@ pub(super) fn load_nff(source: &Source) -> Result<Scene, SceneError> {
 }
 
 #[cfg(test)]
+mod fuzz;
+#[cfg(test)]
 mod tests;

@@ -4,7 +4,7 @@ use glam::{Affine3A, DMat3, DQuat, DVec3, Vec3};
 
 use super::super::super::{SceneError, View};
 use super::faces::Faces;
-use super::statement::{Finish, Look, Parsed, Round, Statement};
+use super::statement::{Finish, Include, Light, Look, Parsed, Round, Statement};
 use super::words::{Fault, Words};
 use super::{keys, mesh};
 
@@ -15,7 +15,12 @@ use super::{keys, mesh};
 pub(super) fn parse(file: &str, stem: &str, bytes: &[u8]) -> Result<Parsed, SceneError> {
     let mut parser = Parser {
         words: Words::new(bytes),
-        parsed: Parsed { stem: stem.into(), statements: Vec::new(), patches: Vec::new(), crossed: 0 },
+        parsed: Parsed {
+            stem: stem.into(),
+            statements: Vec::new(),
+            patches: Vec::new(),
+            warnings: Vec::new(),
+        },
         finish: None,
         open: Vec::new(),
         faces: Faces::default(),
@@ -60,7 +65,7 @@ impl Parser<'_> {
             b"f" | b"fm" => {
                 let finish = if word == b"f" { fill(words)? } else { material(words)? };
                 self.finish = Some(finish);
-                Statement::Finish(finish)
+                Statement::Finish(Box::new(finish))
             }
             b"i" | b"xs" | b"x" | b"}" => {
                 // A mesh ends here: what follows is placed elsewhere, or looks as another file says.
@@ -68,9 +73,9 @@ impl Parser<'_> {
                 self.structure(word)?
             }
             b"d" => Statement::Detail(level(words)?),
-            b"k" => Statement::Keys(keys::read(words)?),
+            b"k" => Statement::Keys(Box::new(keys::read(words, &mut self.parsed.warnings)?)),
             b"a" => frames(words)?,
-            b"v" => Statement::View(view(words)?),
+            b"v" => Statement::View(view(words)?.map(Box::new)),
             b"b" => Statement::Background(words.vector()?),
             b"am" => Statement::Ambient(words.vector()?),
             b"l" => light(words, None)?,
@@ -98,13 +103,13 @@ impl Parser<'_> {
                 let place = words.place(words.start);
                 // It may set another material.
                 self.finish = None;
-                return Ok(Statement::Include { level, name, place });
+                return Ok(Statement::Include(Box::new(Include { level, name, place })));
             }
             b"}" => {
                 let closed = self.open.pop();
                 return closed.map(|_| Statement::Close).ok_or_else(|| words.wrong("no `}`: no `{` is open"));
             }
-            b"xs" => Statement::Open(transform(words)?),
+            b"xs" => Statement::Open(Box::new(transform(words)?)),
             _ => Statement::OpenMoving(words.name("a transform's name")?.to_owned()),
         };
         words.expect("{")?;
@@ -172,7 +177,7 @@ fn material(words: &mut Words<'_>) -> Result<Finish, Fault> {
 fn light(words: &mut Words<'_>, name: Option<String>) -> Result<Statement, Fault> {
     let position = words.vector()?;
     let colour = if words.is_number_next() { Some(words.vector()?) } else { None };
-    Ok(Statement::Light { position, colour, name })
+    Ok(Statement::Light(Box::new(Light { position, colour, name })))
 }
 
 fn frames(words: &mut Words<'_>) -> Result<Statement, Fault> {

@@ -1,6 +1,6 @@
 //! From statements to a scene: carries them out in the order of the text, through all files.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::path::{Component, Path};
 use std::rc::Rc;
 
@@ -11,7 +11,7 @@ use super::super::super::{Bend, Materials, Mesh, Motion, PointLight, Scene, Scen
 use super::looks::{Looks, UNKNOWN};
 use super::parse::parse;
 use super::round::Rounds;
-use super::statement::{Finish, Look, Parsed, Patch, Statement};
+use super::statement::{Finish, Light, Look, Parsed, Patch, Statement};
 
 /// How deep files may include one another.
 const MOST_FILES_DEEP: usize = 64;
@@ -36,6 +36,7 @@ pub(super) fn place(source: &Source, dialect: Dialect) -> Result<Scene, SceneErr
     let own = Rc::new(parse(&source.file, &stem, &source.bytes)?);
     let mut scene = Scene::new(&source.file);
     (scene.background, scene.ambient) = (Some(Vec3::ZERO), dialect.ambient);
+    scene.warnings.extend_from_slice(&own.warnings);
     let root = scene.add_node(None, stem, Affine3A::IDENTITY, None);
     let mut placing = Placing {
         source,
@@ -53,7 +54,6 @@ pub(super) fn place(source: &Source, dialect: Dialect) -> Result<Scene, SceneErr
         moving_lights: Vec::new(),
         motions: HashMap::new(),
         left: MOST_REPEATED + source.bytes.len() as u64,
-        crossed: HashSet::new(),
     };
     placing.file(&own, &source.file, 0)?;
     if dialect.dims_lights {
@@ -89,38 +89,30 @@ struct Placing<'a> {
     motions: HashMap<String, u32>,
     /// What the scene may still unfold to.
     left: u64,
-    /// Files that have polygons whose outline crosses itself.
-    crossed: HashSet<usize>,
 }
 
 impl Placing<'_> {
     /// Carries a file out. The scene's own has number 0.
     fn file(&mut self, parsed: &Parsed, file: &str, number: usize) -> Result<(), SceneError> {
-        if parsed.crossed > 0 && self.crossed.insert(number) {
-            let (count, stem) = (parsed.crossed, &parsed.stem);
-            self.scene.warnings.push(format!("{count} polygons of {stem:?} cross themselves: cut up anyhow"));
-        }
         for statement in &parsed.statements {
             self.spend(1, file)?;
             match statement {
-                Statement::View(Some(view)) => self.scene.view = Some(*view),
+                Statement::View(Some(view)) => self.scene.view = Some(**view),
                 Statement::View(None) => {
                     let warning = "a view without a direction, or upright along it, is left out";
                     self.scene.warnings.push(warning.to_owned());
                 }
                 Statement::Background(colour) => self.scene.background = Some(*colour),
                 Statement::Ambient(colour) => self.scene.ambient = Some(*colour),
-                Statement::Light { position, colour, name } => {
-                    self.light(*position, *colour, name.as_deref());
-                }
+                Statement::Light(light) => self.light(light),
                 Statement::Detail(level) => self.level = *level,
-                Statement::Include { level, name, place } => {
-                    if *level <= self.level {
-                        self.include(name, file, *place)?;
+                Statement::Include(include) => {
+                    if include.level <= self.level {
+                        self.include(&include.name, file, include.place)?;
                     }
                 }
-                Statement::Finish(finish) => self.finish = Some((*finish, parsed.stem.clone())),
-                Statement::Open(transform) => self.open("", *transform, file)?,
+                Statement::Finish(finish) => self.finish = Some((**finish, parsed.stem.clone())),
+                Statement::Open(transform) => self.open("", **transform, file)?,
                 Statement::OpenMoving(name) => {
                     self.open(name, Affine3A::IDENTITY, file)?;
                     self.moving.push((self.here(), name.clone()));
@@ -167,15 +159,15 @@ impl Placing<'_> {
         Ok(())
     }
 
-    fn light(&mut self, position: Vec3, colour: Option<Vec3>, name: Option<&str>) {
+    fn light(&mut self, light: &Light) {
         let lights = &mut self.scene.lights;
-        if let Some(name) = name {
-            self.moving_lights.push((lights.len() as u32, name.to_owned()));
+        if let Some(name) = &light.name {
+            self.moving_lights.push((lights.len() as u32, name.clone()));
         }
-        if colour.is_none() {
+        if light.colour.is_none() {
             self.plain_lights.push(lights.len());
         }
-        lights.push(PointLight { position, colour: colour.unwrap_or(Vec3::ONE) });
+        lights.push(PointLight { position: light.position, colour: light.colour.unwrap_or(Vec3::ONE) });
     }
 
     fn open(&mut self, name: &str, transform: Affine3A, file: &str) -> Result<(), SceneError> {
@@ -226,6 +218,7 @@ impl Placing<'_> {
                 self.left += bytes.len() as u64;
                 let stem = Path::new(&inside).file_stem().unwrap_or_default().to_string_lossy();
                 let known = (self.read.len() + 1, Rc::new(parse(&path, &stem, &bytes)?));
+                self.scene.warnings.extend_from_slice(&known.1.warnings);
                 self.read.insert(inside.clone(), known.clone());
                 known
             }

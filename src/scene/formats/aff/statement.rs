@@ -13,8 +13,8 @@ pub(super) struct Parsed {
     pub(super) stem: Rc<str>,
     pub(super) statements: Vec<Statement>,
     pub(super) patches: Vec<Patch>,
-    /// Polygons whose outline crosses itself.
-    pub(super) crossed: usize,
+    /// What of it is not as it says.
+    pub(super) warnings: Vec<String>,
 }
 
 impl Parsed {
@@ -25,24 +25,24 @@ impl Parsed {
     }
 }
 
-/// One statement, or several that make one mesh.
+/// One statement, or several that make one mesh. What is large is boxed: a file may be made of the small ones alone.
 pub(super) enum Statement {
     /// `v`; none if it looks nowhere.
-    View(Option<View>),
+    View(Option<Box<View>>),
     /// `b`
     Background(Vec3),
     /// `am`
     Ambient(Vec3),
     /// `l`, `la`
-    Light { position: Vec3, colour: Option<Vec3>, name: Option<String> },
+    Light(Box<Light>),
     /// `d`
     Detail(i64),
-    /// `i`, and line and column of the file's name.
-    Include { level: i64, name: String, place: (u32, u32) },
+    /// `i`
+    Include(Box<Include>),
     /// `f`, `fm`
-    Finish(Finish),
+    Finish(Box<Finish>),
     /// `xs`
-    Open(Affine3A),
+    Open(Box<Affine3A>),
     /// `x`
     OpenMoving(String),
     /// `}`
@@ -52,9 +52,24 @@ pub(super) enum Statement {
     /// `s`, `c`
     Round(Round),
     /// `k`
-    Keys(Motion),
+    Keys(Box<Motion>),
     /// `a`: first and last time in seconds, frames.
     Frames(f64, f64, u32),
+}
+
+/// A light, which may follow the keys of its name.
+pub(super) struct Light {
+    pub(super) position: Vec3,
+    pub(super) colour: Option<Vec3>,
+    pub(super) name: Option<String>,
+}
+
+/// A file to be read in place.
+pub(super) struct Include {
+    pub(super) level: i64,
+    pub(super) name: String,
+    /// Line and column of the name.
+    pub(super) place: (u32, u32),
 }
 
 /// A material, before it is known whether a texture lies on it.

@@ -199,6 +199,12 @@ fn key_frames_are_curves() {
     let Some(Curve::Spline(sizes)) = &lamp.scale else { panic!("{lamp:?}") };
     let value = Vec3::new(1.0, 2.0, 3.0);
     assert_eq!(sizes[0], SplineKey { time: 0.0, value, tension: 0.0, continuity: 0.0, bias: 0.0 });
+    let late = read(
+        "k a { transl 6 0 0 0 0 0 0 0 1 1 0 0 0 0 0 3 3 0 0 0 0 0 2 9 0 0 0 0 0 3 4 0 0 0 0 0 4 5 0 0 0 0 0 }",
+    );
+    let Some(Curve::Spline(keys)) = &late.animation.motions[0].translation else { panic!() };
+    assert_eq!(keys.iter().map(|key| key.value.x).collect::<Vec<_>>(), [0.0, 1.0, 3.0, 4.0, 5.0]);
+    assert_eq!(late.warnings, ["1 keys of \"a\" are earlier than one before them: left out"]);
     // The last keys of a name count, wherever it is used.
     assert_eq!((&animation.motions[1].translation, animation.motions[1].visibility.len()), (&None, 1));
     assert_eq!(scene.lights.len(), 2);
@@ -257,7 +263,7 @@ fn negative_radii_are_told() {
 
 #[test]
 fn what_is_wrong_is_named_with_its_place() {
-    let wrong: [(&str, &str); 36] = [
+    let wrong: [(&str, &str); 37] = [
         ("l 1 2", "line 1, column 6: the file ends; expected a number"),
         ("\n\n  q 1", "line 3, column 3: \"q\"; expected a statement ("),
         ("b 1 2 x", "line 1, column 7: \"x\"; expected a number"),
@@ -293,6 +299,10 @@ fn what_is_wrong_is_named_with_its_place() {
         (
             "k a { visibility 1 0 1 visibility 1 0 1",
             "column 24: \"visibility\"; expected each kind of keys once",
+        ),
+        (
+            "k a { transl 4 0 0 0 0 0 0 0 1 1 0 0 0 0 0 2 0 0 0 0 0 0 1 0 0 0 0 0 0",
+            "in the order of their times",
         ),
         ("tpa 0", "column 5: \"0\"; expected at least 1 key"),
         ("a 1 0 5", "column 5: \"0\"; expected an end not before the start, 1"),

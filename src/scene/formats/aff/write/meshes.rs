@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use glam::Vec3;
 
-use super::super::super::super::{Bend, Corners, Mesh, Scene};
+use super::super::super::super::{Bend, Mesh, Scene};
 use super::Out;
 
 /// Triangles of a mesh that one `m` can hold.
@@ -107,9 +107,9 @@ impl Out {
             let corners = vertices.map(|vertex| key.positions[vertex as usize]);
             let [a, b, c] = corners;
             let flat = [(b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3(); 3];
-            let normals = Corners::of(&mesh.shading.normals, triangle, vertices).map(|_| {
-                vertices.map(|vertex| key.normals.get(vertex as usize).copied().unwrap_or(Vec3::ZERO))
-            });
+            let by_normal = mesh.shading.normals.triangles.as_ref().map_or(vertices, |list| list[triangle]);
+            let [a, b, c] = by_normal.map(|normal| key.normals.get(normal as usize).copied());
+            let normals = a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]);
             for (corner, normal) in corners.into_iter().zip(normals.unwrap_or(flat)) {
                 self.vector(corner);
                 self.vector(normal);

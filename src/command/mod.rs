@@ -8,6 +8,7 @@ mod progress;
 mod render;
 mod report;
 mod run;
+mod save;
 mod stress;
 mod table;
 mod trace;
@@ -59,7 +60,8 @@ fn act(action: Action) -> Result<ExitCode> {
         Action::Advise(words) => advise::advise(&words)?,
         Action::Render(words) => render::render(&words)?,
         Action::Compare(words) => compare::compare(&words)?,
-        Action::Scene { scene } => print::line(&inspect::scene(&scene)?)?,
+        Action::Scene { scene, save: Some(file) } => save::save(&scene, &file)?,
+        Action::Scene { scene, save: None } => print::line(&inspect::scene(&scene)?)?,
         Action::Machine { machine } => {
             print::line(&inspect::machine(machine.as_deref(), &mut tell)?)?;
         }

@@ -53,7 +53,12 @@ pub(crate) fn render(words: &RenderWords) -> Result<()> {
         let light = light_at(&camera, scene);
         world.add_light(light);
     }
-    let look = Look { depth: words.depth, ..Look::default() };
+    let unsaid = Look::default();
+    let look = Look {
+        depth: words.depth,
+        ambient: scene.ambient.unwrap_or(unsaid.ambient),
+        background: scene.background.unwrap_or(unsaid.background),
+    };
     let mut film = Film::new(&team, width, height).context("the picture is too large")?;
     let before = team.now();
     let shares = {
@@ -86,7 +91,7 @@ fn cores() -> u32 {
 }
 
 /// A file, or what a generator makes.
-fn read(name: &str) -> Result<Scene> {
+pub(super) fn read(name: &str) -> Result<Scene> {
     if name.contains(['.', '/', '\\']) {
         return Ok(Cache::of_user().load(name)?.0);
     }

@@ -55,12 +55,15 @@ pub(crate) enum Action {
     /// Large files are kept, parsed, in the user's cache folder and are read from there the next time, until they
     /// change. The variable APPORTION_CACHE names another folder, or says `off`.
     #[command(
-        after_help = "Examples:\n  apportion scene assembly.glb\n  apportion scene dragon.ply.gz\n  apportion scene factory-large"
+        after_help = "Examples:\n  apportion scene assembly.glb\n  apportion scene dragon.ply.gz\n  apportion scene factory-large\n  apportion scene assembly.glb --save assembly.aff"
     )]
     Scene {
-        /// A file (glTF, GLB, OBJ, PLY, STL; also .gz) or the name of a generated scene.
+        /// A file (glTF, GLB, OBJ, PLY, STL, URDF, AFF, NFF; also .gz) or the name of a generated scene.
         #[arg(value_name = "FILE|NAME")]
         scene: String,
+        /// Write it to this file instead, as AFF, with its textures as PPM beside it; what AFF cannot say is told.
+        #[arg(long, value_name = "FILE.aff")]
+        save: Option<PathBuf>,
     },
     /// Show the constants of the machines, or fit `host` to this computer.
     #[command(
@@ -119,7 +122,7 @@ const RENDER_EXAMPLES: &str = "Examples:
 /// The words of `render`.
 #[derive(Debug, Args)]
 pub(crate) struct RenderWords {
-    /// A file (glTF, GLB, OBJ, PLY, STL; also .gz) or the name of a generated scene.
+    /// A file (glTF, GLB, OBJ, PLY, STL, URDF, AFF, NFF; also .gz) or the name of a generated scene.
     #[arg(value_name = "FILE|NAME")]
     pub(crate) scene: String,
     /// Where the eye is, the point it looks at, and how wide it opens from bottom to top, in metres and degrees.
@@ -222,7 +225,7 @@ pub(crate) enum Format {
 /// The words of `advise`.
 #[derive(Debug, Args)]
 pub(crate) struct AdviseWords {
-    /// A file (glTF, GLB, OBJ, PLY, STL; also .gz) or the name of a generated scene.
+    /// A file (glTF, GLB, OBJ, PLY, STL, URDF, AFF, NFF; also .gz) or the name of a generated scene.
     #[arg(long, value_name = "FILE|NAME")]
     pub(crate) scene: String,
     /// What is to be done with it.

@@ -26,6 +26,10 @@ pub struct Scene {
     pub lights: Vec<PointLight>,
     /// Where it wants to be looked at from.
     pub view: Option<View>,
+    /// Seen where nothing is, linear; absent where nobody said.
+    pub background: Option<Vec3>,
+    /// Light from everywhere, linear; absent where nobody said.
+    pub ambient: Option<Vec3>,
     /// What moves in it, and when.
     pub animation: Animation,
     /// What a file asked for and could not be had, such as the picture of a texture: the scene is whole without.

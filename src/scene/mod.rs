@@ -24,7 +24,7 @@ pub use animation::{Animation, Bend, BendKey, Bent, Curve, HermiteKey, Motion, P
 pub use cache::{Cache, Origin};
 pub use describe::{Description, describe};
 pub use error::SceneError;
-pub use formats::{FORMATS, Format, load};
+pub use formats::{FORMATS, Format, Written, load, to_aff};
 pub use generate::{Aisles, GENERATORS, Generator, by_name};
 pub use graph::{Mesh, Node, Scene};
 pub use movers::Movers;

@@ -46,6 +46,8 @@ impl Scene {
             materials: self.materials,
             textures: self.textures,
             warnings: self.warnings,
+            background: self.background,
+            ambient: self.ambient,
             // That of one copy, which would show some of the others by chance, is none of all.
             view: None,
             animation: Animation { followers, lights, camera: None, ..self.animation },

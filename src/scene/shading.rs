@@ -13,6 +13,8 @@ pub struct Material {
     pub name: String,
     /// Share scattered evenly; times the texture's colour, if there is one.
     pub diffuse: Vec3,
+    /// Share scattered of light from everywhere, times the texture's colour; that of `diffuse` where absent.
+    pub ambient: Option<Vec3>,
     /// By number among the scene's textures.
     pub texture: Option<u32>,
     /// Share of a light seen in the highlight's middle.
@@ -44,6 +46,7 @@ impl Material {
         Self {
             name: name.into(),
             diffuse,
+            ambient: None,
             texture: None,
             highlight: Vec3::ZERO,
             exponent: 1,

@@ -1,5 +1,7 @@
 //! What must hold of a scene before anything is built over it.
 
+use glam::Vec3;
+
 use super::{Scene, SceneError};
 
 impl Scene {
@@ -85,10 +87,18 @@ impl Scene {
                 );
             }
             let terms = [material.diffuse, material.highlight, material.mirror, material.transmission];
-            let finite = terms.iter().chain([&material.absorption]).all(|term| term.is_finite());
+            let finite = terms.iter().chain([&material.absorption]).chain(&material.ambient);
+            let finite = finite.copied().all(Vec3::is_finite);
             if !(finite && material.index > 0.0 && material.index.is_finite()) {
                 return fail(place, format!("{material:?}"), "finite numbers, an index above 0".to_owned());
             }
+        }
+        if let Some(bad) = [self.background, self.ambient].into_iter().flatten().find(|c| !c.is_finite()) {
+            return fail(
+                "background or ambient light".to_owned(),
+                bad.to_string(),
+                "finite numbers".to_owned(),
+            );
         }
         for (index, texture) in self.textures.iter().enumerate() {
             let pixels = texture.width as usize * texture.height as usize;

@@ -302,3 +302,38 @@ fn an_experiment_can_ask_for_every_kind_of_camera_path() {
     let said = refused(folder.path(), &["run", "paths", "--path", "walk.csv"], 2);
     assert!(said.contains("sets `scene.path`: it takes no --path walk.csv"), "{said}");
 }
+
+#[test]
+fn a_scene_is_saved_as_aff_with_what_could_not_be_told() {
+    let folder = empty();
+    let output = apportion(folder.path(), &["scene", "room", "--save", "copy.aff"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success() && said.contains("mirror the more the flatter"), "{said}");
+    let text = std::fs::read_to_string(folder.path().join("copy.aff")).expect("it was written");
+    let pictures = text.split_whitespace().filter(|word| word.ends_with(".ppm"));
+    let pictures: std::collections::BTreeSet<&str> = pictures.collect();
+    assert!(!pictures.is_empty());
+    for picture in pictures {
+        assert!(folder.path().join(picture).is_file(), "{picture} is not there");
+    }
+    let described = |name: &str| {
+        let text = out(&apportion(folder.path(), &["scene", name]));
+        let line =
+            text.lines().find(|line| line.starts_with("placed")).expect("a line of triangles").to_owned();
+        line.rsplit(", ").next().unwrap_or_default().to_owned()
+    };
+    assert_eq!(described("copy.aff"), described("room"));
+    let left = std::fs::read_dir(folder.path()).expect("the folder is there").flatten();
+    assert!(
+        left.map(|entry| entry.path()).all(|path| path.extension().is_some_and(|e| e == "aff" || e == "ppm"))
+    );
+    for (words, part, code) in [
+        (&["scene", "room", "--save", "copy.obj"][..], "ends in .aff", 2),
+        (&["scene", "rom", "--save", "copy.aff"], "room", 2),
+        (&["scene", "room", "--save", "none/copy.aff"], "none", 1),
+    ] {
+        let said = String::from_utf8_lossy(&apportion(folder.path(), words).stderr).into_owned();
+        assert!(said.contains(part), "{words:?}: {said}");
+        assert_eq!(apportion(folder.path(), words).status.code(), Some(code), "{words:?}");
+    }
+}

@@ -31,6 +31,17 @@ const URDF: &str = "<?xml version=\"1.0\"?>\n<robot name=\"r\" xmlns:x=\"http://
     <visual><geometry><sphere radius=\"2e0\"/></geometry></visual>\n</link>\n<!-- c -->\n\
     <joint name=\"j\" type=\"fixed\">\n<parent link=\"a\"/>\n<child link=\"b\"/>\n<origin xyz=\"1 2 3\"/>\n</joint>\n</robot>\n";
 
+const AFF: &str = "v from 0 0 9 at 0 0 0 up 0 1 0 angle 40 hither 1 resolution 4 3\nb 0 0.5 1 am 1 1 1\n\
+    l 1 2 3 0.5 0.5 0.5 la arm 0 0 1\na 0 2.5 7\nd 0 i 1 none.aff\nf 1 0 0 0.5 0.5 9 0 1\n\
+    fm 1 1 1 0 1 0 0 0 1 30 0.9 1.5\nc 0 0 0 1 0 0 2 0.5 s 0 0 0 1\n\
+    p 5 0 0 0 4 0 0 4 4 0 2 1 0 0 4 0\npp 3 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 1\n\
+    tt t.ppm 0 0 0 0 0 1 0 0 1 0 0 1 0 0 1\nxs 1 2 3 0 0 1 90 4 5 6 {\n\
+    m vertices 3 0 0 0 1 0 0 0 1 0\nnormals 1 0 0 1\ntexturecoords 2 t.ppm 0 0 1 1\n\
+    triangles 1 0 1 2 0 0 0 0 1 1\n}\nx arm {\ns 1 1 1 -1\n\
+    tpa 2 0 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 1\n1 0 0 1 0 0 1 1 0 1 0 0 1 0 1 1 0 0 1\n}\n\
+    k arm {\ntransl 4\n0 0 0 0 0 0 0\n1 1 0 0 0 0 0\n2 2 0 0 0 0 0\n3 3 0 0 0 0 0\n\
+    rot 4 0 0 0 1 0 0 0 0 1 0 0 1 90 0 0 0 2 0 0 1 180 0 0 0 3 0 0 1 0 0 0 0\nvisibility 1 0 1\n}\n";
+
 /// Good files, by name.
 fn good() -> Vec<(&'static str, Vec<u8>)> {
     let text =
@@ -49,6 +60,8 @@ fn good() -> Vec<(&'static str, Vec<u8>)> {
         ("model.glb", glb()),
         // It names the text.stl above, as damaged as that is.
         ("model.urdf", URDF.as_bytes().to_vec()),
+        ("model.aff", AFF.as_bytes().to_vec()),
+        ("model.nff", AFF.as_bytes().to_vec()),
         ("path.csv", CSV.as_bytes().to_vec()),
     ]
 }
@@ -256,6 +269,11 @@ fn many_small_things_take_memory_in_proportion() {
         ("solids.stl", "", "solid\nendsolid\n"),
         ("objects.obj", "v 0 0 0\n", "o a\nf 1 1 1\n"),
         ("polygon.obj", "v 0 0 0\nf", " 1"),
+        ("braces.aff", "", "x a{}"),
+        ("balls.nff", "", "f 1 1 1 1 1 1 1 1 s 0 0 0 1 "),
+        ("polygons.aff", "", "p 3 0 0 0 1 0 0 0 1 0 "),
+        ("meshes.aff", "", "m vertices 0 triangles 0 "),
+        ("moving.aff", "", "k a{}x a{tpa 1 0 0 0 0 0 0 1 0 0 0 0 0 1 0 0 0 0 0 1}"),
         ("lines.csv", &CSV[..CSV.find('\n').unwrap() + 1], "0,0,0,1,0,0,0,1,0,9\n"),
     ] {
         let text = head.to_string() + &piece.repeat(50_000);

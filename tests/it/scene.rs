@@ -138,7 +138,7 @@ fn unknown_names_and_formats_list_the_known() {
     let message = scene::load("model.step").unwrap_err().to_string();
     assert!(
         message.contains("model.step")
-            && message.contains(".gltf, .glb, .obj, .ply, .stl, .urdf, or one of these with .gz"),
+            && message.contains(".gltf, .glb, .obj, .ply, .stl, .urdf, .aff, .nff, or one of these with .gz"),
         "{message}"
     );
     let message = scene::load("missing.obj").unwrap_err().to_string();
@@ -241,5 +241,96 @@ fn robots_from_urdf() {
         assert_eq!(depths.max(), Some(deepest), "{file}");
         let size = scene.bounds().size();
         assert!(size.max_element() > 0.9 && size.max_element() < 2.0, "{file}: {size}");
+    }
+}
+
+/// The published counts of BART (Lext et al. 2000, Table 1), and what its files say.
+#[test]
+fn bart_from_aff() {
+    for (file, meshes, triangles, transforms, moving, still_moving) in [
+        ("bart/kitchen/kitchen.aff", 393, 110_561, 416 + 7, 5, 0),
+        ("bart/robot/Robot.aff", 1849, 71_708, 521 + 190, 1, 0),
+        ("bart/museum/museum5.aff", 0, 10_284 + 1_024, 0, 0, 1),
+    ] {
+        let Some(scene) = real(file) else { return };
+        let description = scene::describe(&scene);
+        assert_eq!(description.instanced_triangles, triangles, "{file}");
+        if transforms > 0 {
+            assert_eq!(description.instances, meshes, "{file}");
+            assert_eq!(scene.nodes.len(), 1 + transforms + meshes, "{file}");
+            assert!(description.meshes <= meshes && scene.animation.followers.len() >= moving, "{file}");
+        }
+        let animation = &scene.animation;
+        assert_eq!(animation.bends.len(), still_moving, "{file}");
+        assert!(animation.camera.is_some() && animation.frames >= 300, "{file}");
+        assert!(scene.view.is_some() && !scene.textures.is_empty(), "{file}");
+    }
+    let kitchen = real("bart/kitchen/kitchen.aff").unwrap();
+    assert_eq!((kitchen.lights.len(), kitchen.ambient), (6, Some(glam::Vec3::splat(2.5))));
+    let time = (kitchen.animation.start, kitchen.animation.end, kitchen.animation.frames);
+    assert_eq!(time, (0.0, 20.0, 800));
+    let robots = real("bart/robot/Robot.aff").unwrap();
+    // Six names have no keys: what they hold stands still.
+    let named = robots.nodes.iter().filter(|node| !node.name.is_empty() && node.mesh.is_none()).count() - 1;
+    assert_eq!(named, 190);
+    assert!(robots.animation.followers.len() < named);
+    let museum = real("bart/museum/museum5.aff").unwrap();
+    assert_eq!(museum.primitives.len(), 8);
+    let bend = &museum.animation.bends[0];
+    assert_eq!((museum.meshes[bend.mesh as usize].triangles.len(), bend.keys.len()), (1024, 5));
+    assert_eq!((bend.keys[0].time, bend.keys[4].time), (0.0, 4.0));
+}
+
+/// The counts of the SPD's own Readme: a polygon of n corners is n - 2 triangles.
+#[test]
+fn standard_procedural_databases_from_nff() {
+    for (file, triangles, primitives) in [
+        ("balls_s4", 2, 7381),
+        ("balls_s5", 2, 66_430),
+        ("gears_s4", 36_610, 0),
+        ("mount_s6", 8192, 4),
+        ("rings_s7", 2, 8400),
+        ("tetra_s6", 4096, 0),
+        ("tetra_s8", 65_536, 0),
+        ("tree_s11", 2, 8190),
+    ] {
+        let Some(scene) = real(&format!("spd_nff/{file}.nff")) else { return };
+        let description = scene::describe(&scene);
+        assert_eq!(
+            (description.instanced_triangles, description.primitives),
+            (triangles, primitives),
+            "{file}"
+        );
+        assert!(scene.view.is_some() && !scene.lights.is_empty() && scene.warnings.is_empty(), "{file}");
+    }
+}
+
+#[test]
+fn bart_comes_back_as_it_was_written() {
+    for file in ["bart/museum/museum5.aff", "bart/kitchen/kitchen.aff", "bart/robot/Robot.aff"] {
+        let Some(scene) = real(file) else { return };
+        let folder = tempfile::tempdir().unwrap();
+        let written = scene::to_aff(&scene, "out");
+        std::fs::write(folder.path().join("out.aff"), &written.text).unwrap();
+        for (name, bytes) in &written.pictures {
+            std::fs::write(folder.path().join(name), bytes).unwrap();
+        }
+        let found = scene::load(folder.path().join("out.aff")).unwrap();
+        let (a, b) = (scene::describe(&scene), scene::describe(&found));
+        assert_eq!(
+            (a.instanced_triangles, a.primitives, a.textures, a.lights),
+            (b.instanced_triangles, b.primitives, b.textures, b.lights),
+            "{file}"
+        );
+        assert!(found.warnings.is_empty(), "{file}: {:?}", found.warnings);
+        let frames = |scene: &Scene| (scene.animation.start, scene.animation.end, scene.animation.frames);
+        assert_eq!(frames(&scene), frames(&found), "{file}");
+        assert_eq!(scene.animation.followers.len(), found.animation.followers.len(), "{file}");
+        for (a, b) in scene.animation.bends.iter().zip(&found.animation.bends) {
+            assert!(a.keys == b.keys, "{file}: a mesh that bends otherwise");
+        }
+        assert_eq!(scene.animation.bends.len(), found.animation.bends.len(), "{file}");
+        let (a, b) = (scene.bounds(), found.bounds());
+        assert!(a.min.distance(b.min).max(a.max.distance(b.max)) <= 1e-5 * a.half_diagonal(), "{file}");
     }
 }

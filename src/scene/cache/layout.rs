@@ -8,7 +8,7 @@
 //! roots u32
 //! nodes:   name, parent u32, mesh u32, children u32, transform 12 f32
 //! meshes:  name, positions 3 f32, triangles 3 u32, shading (`look.rs`)
-//! materials, textures, lights, primitives, warnings (`look.rs`)
+//! materials, textures, lights, primitives, view, background, ambient light, warnings (`look.rs`)
 //! animation (`motion.rs`)
 //! checksum u32 (CRC-32 of all before it)
 //! ```

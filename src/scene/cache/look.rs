@@ -20,6 +20,7 @@ pub(super) fn put_scene(out: &mut Vec<u8>, scene: &Scene) -> Option<()> {
         for colour in colours(material) {
             put_floats(out, &colour.to_array());
         }
+        put_some(out, material.ambient);
         put_floats(out, &[material.index]);
         let words = [material.texture.unwrap_or(NONE), material.exponent, u32::from(material.fresnel)];
         out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
@@ -54,6 +55,8 @@ pub(super) fn put_scene(out: &mut Vec<u8>, scene: &Scene) -> Option<()> {
         [view.eye, view.look, view.up].iter().for_each(|vector| put_floats(out, &vector.to_array()));
         put_floats(out, &[view.fov_y]);
     }
+    put_some(out, scene.background);
+    put_some(out, scene.ambient);
     put_count(out, scene.warnings.len())?;
     scene.warnings.iter().try_for_each(|warning| put(out, warning.bytes()))
 }
@@ -84,6 +87,12 @@ fn put_corners<T: Copy, const N: usize>(
     put_words(out, corners.triangles.as_deref().unwrap_or_default().as_flattened())
 }
 
+/// A colour that may be absent.
+fn put_some(out: &mut Vec<u8>, colour: Option<Vec3>) {
+    out.push(u8::from(colour.is_some()));
+    put_floats(out, &colour.unwrap_or_default().to_array());
+}
+
 fn put_floats(out: &mut Vec<u8>, numbers: &[f32]) {
     out.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
 }
@@ -100,6 +109,8 @@ pub(super) fn read_scene(from: &mut Reader<'_>, scene: Scene) -> Option<Scene> {
         lights: from.list(|from| Some(PointLight { position: from.vector()?, colour: from.vector()? }))?,
         primitives: from.list(read_primitive)?,
         view: read_view(from)?,
+        background: read_some(from)?,
+        ambient: read_some(from)?,
         warnings: from.list(Reader::text)?,
         ..scene
     })
@@ -107,6 +118,13 @@ pub(super) fn read_scene(from: &mut Reader<'_>, scene: Scene) -> Option<Scene> {
 
 fn some(index: u32) -> Option<u32> {
     Some(index).filter(|index| *index != NONE)
+}
+
+/// None twice: nothing that can be read, or no colour.
+fn read_some(from: &mut Reader<'_>) -> Option<Option<Vec3>> {
+    let [has_colour] = from.array()?;
+    let colour = from.vector()?;
+    Some((has_colour != 0).then_some(colour))
 }
 
 fn read_material(from: &mut Reader<'_>) -> Option<Material> {
@@ -117,6 +135,7 @@ fn read_material(from: &mut Reader<'_>) -> Option<Material> {
         mirror: from.vector()?,
         transmission: from.vector()?,
         absorption: from.vector()?,
+        ambient: read_some(from)?,
         index: from.number()?,
         texture: some(from.word()?),
         exponent: from.word()?,

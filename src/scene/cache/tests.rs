@@ -213,7 +213,7 @@ fn be_seen(scene: &mut Scene) {
     use crate::geometry::{Sphere, hit::Cone};
     use glam::{Vec2, Vec3};
     scene.add_material(Material { texture: Some(0), ..Material::polished("coat", Vec3::X, 1.5) });
-    scene.add_material(Material::dielectric("glass", 1.3));
+    scene.add_material(Material { ambient: Some(Vec3::Y), ..Material::dielectric("glass", 1.3) });
     let shading = &mut scene.meshes[0].shading;
     shading.materials = Materials::Each(vec![1]);
     shading.normals = Corners::of_vertices(vec![Vec3::Y; 3]);
@@ -232,6 +232,7 @@ fn be_seen(scene: &mut Scene) {
         Primitive { shape: Shape::Cone(cone), material: Some(1) },
     ];
     scene.view = Some(View { eye: Vec3::X, look: Vec3::Y, up: Vec3::Z, fov_y: 0.5 });
+    (scene.background, scene.ambient) = (Some(Vec3::Z), None);
     scene.warnings.push("something is not there".into());
     move_about(scene);
     scene.validate().unwrap();

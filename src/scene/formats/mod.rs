@@ -5,6 +5,7 @@ use std::path::Path;
 use super::source::{Source, Stamp, format_of};
 use super::{Scene, SceneError};
 
+mod aff;
 mod base64;
 mod gltf;
 mod gltf_bend;
@@ -18,12 +19,15 @@ mod obj_shading;
 mod ply;
 mod ply_body;
 mod ply_header;
+mod ppm;
 mod stl;
 mod stl_text;
 mod texture;
 mod urdf;
 mod urdf_shapes;
 mod urdf_xml;
+
+pub use aff::{Written, to_aff};
 
 /// A file format that scenes are read from.
 pub struct Format {
@@ -47,6 +51,8 @@ pub const FORMATS: &[Format] = &[
         about: "robots: links as their joints place them, with meshes",
         load: urdf::load,
     },
+    Format { extension: "aff", about: "animated scenes of BART, with what they include", load: aff::load },
+    Format { extension: "nff", about: "neutral file format, as of the SPD", load: aff::load_nff },
 ];
 
 /// Reads a scene from a file, in the format its extension says, and validates it. The scene is named

@@ -1,4 +1,4 @@
-//! Pictures for textures: PNG and JPEG.
+//! Pictures for textures: PNG, JPEG and PPM.
 
 use std::io::Cursor;
 
@@ -9,6 +9,7 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 
 use super::super::Texture;
 use super::super::source::Source;
+use super::ppm;
 
 /// The greatest width and height a picture may have: a small file may unpack to any size.
 const MOST: usize = 16_384;
@@ -35,14 +36,16 @@ pub(super) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
     let decoded = match bytes {
         [0x89, b'P', b'N', b'G', ..] => decode_png(bytes),
         [0xff, 0xd8, ..] => decode_jpeg(bytes),
-        _ => Err("it is neither PNG nor JPEG".to_owned()),
+        [b'P', b'3' | b'6', ..] => ppm::decode(bytes),
+        _ => Err("it is neither PNG nor JPEG nor PPM".to_owned()),
     };
     let (width, height, pixels) =
         decoded.map_err(|error| format!("texture {name:?} cannot be decoded: {error}"))?;
     Ok(Texture { name: name.to_owned(), width: width as u32, height: height as u32, pixels })
 }
 
-type Decoded = (usize, usize, Vec<[u8; 3]>);
+/// Width, height and pixels.
+pub(super) type Decoded = (usize, usize, Vec<[u8; 3]>);
 
 fn decode_png(bytes: &[u8]) -> Result<Decoded, String> {
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
@@ -69,7 +72,7 @@ fn decode_jpeg(bytes: &[u8]) -> Result<Decoded, String> {
     Ok((width, height, colours(&pixels, 3)))
 }
 
-fn check_size(width: usize, height: usize) -> Result<(), String> {
+pub(super) fn check_size(width: usize, height: usize) -> Result<(), String> {
     let fits = (1..=MOST).contains(&width) && (1..=MOST).contains(&height);
     if fits { Ok(()) } else { Err(format!("{width} x {height} pixels; expected 1 to {MOST} each way")) }
 }
@@ -129,6 +132,6 @@ mod tests {
             let _ = decode("t.png", &bytes);
         }
         assert!(decode("t.jpg", &[0xff, 0xd8, 0xff, 0xe0, 0, 16]).is_err());
-        assert!(decode("t.tga", b"anything").unwrap_err().ends_with("neither PNG nor JPEG"));
+        assert!(decode("t.tga", b"anything").unwrap_err().ends_with("neither PNG nor JPEG nor PPM"));
     }
 }

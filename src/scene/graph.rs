@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Vec3};
 
-use super::{Animation, Material, PointLight, Primitive, Shading, Texture, View};
+use super::{Animation, Flock, Material, PointLight, Primitive, Shading, Texture, View};
 use crate::geometry::Aabb;
 
 /// A scene: a forest of nodes that place meshes in the world.
@@ -18,6 +18,8 @@ pub struct Scene {
     pub roots: Vec<u32>,
     /// Spheres and cones, which hang on no node: only rays see them.
     pub primitives: Vec<Primitive>,
+    /// Spheres and cones that hang on nodes.
+    pub flocks: Vec<Flock>,
     /// What surfaces are made of.
     pub materials: Vec<Material>,
     /// Pictures laid on surfaces.
@@ -147,7 +149,32 @@ impl Scene {
     /// The box around everything in the world, in metres; empty for an empty scene.
     pub fn bounds(&self) -> Aabb {
         let primitives = self.primitives.iter().map(|primitive| primitive.shape.bounds());
-        self.world_bounds().into_iter().chain(primitives).fold(Aabb::EMPTY, Aabb::union)
+        let all = self.world_bounds().into_iter().chain(primitives).fold(Aabb::EMPTY, Aabb::union);
+        self.flock_bounds().into_iter().fold(all, |all, (_, bounds)| all.union(bounds))
+    }
+
+    /// Nodes that place flocks, flock by flock, and the box around what each places in the world, in metres: that around
+    /// the flock's own box, so it may be larger than need be. The scene must be valid.
+    pub fn flock_bounds(&self) -> Vec<(u32, Aabb)> {
+        if self.flocks.is_empty() {
+            return Vec::new();
+        }
+        let world = self.world_transforms();
+        let of = |flock: &Flock| {
+            let own = flock.bounds();
+            flock
+                .nodes
+                .iter()
+                .map(|node| (*node, own.transformed(&world[*node as usize])))
+                .collect::<Vec<_>>()
+        };
+        self.flocks.iter().flat_map(of).collect()
+    }
+
+    /// How many spheres and cones there are in the world: those of a flock count for each node that places it.
+    pub fn primitives_placed(&self) -> usize {
+        let placed = self.flocks.iter().map(|flock| flock.primitives.len() * flock.nodes.len());
+        self.primitives.len() + placed.sum::<usize>()
     }
 
     /// How many nodes place a mesh, and how many triangles that makes, shared meshes counted each time.

@@ -134,7 +134,7 @@ pub(crate) struct RenderWords {
     pub(crate) out: Option<PathBuf>,
     /// Over what the hierarchy is: `one` over all triangles in the world, or `two` levels, one over places of meshes that
     /// each have their own. Two take less memory where meshes stand more than once; one is faster.
-    #[arg(long, default_value = "one", value_parser = levels)]
+    #[arg(long, value_name = "one|two", default_value = "one")]
     pub(crate) levels: Levels,
     /// How many times light is followed through mirrors and glass.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(0..=64))]
@@ -174,11 +174,6 @@ fn camera(text: &str) -> Result<CameraWords, String> {
     };
     let camera = camera.map(|((eye, look), degrees)| CameraWords { eye, look, degrees });
     camera.ok_or_else(|| "expected X,Y,Z:X,Y,Z or X,Y,Z:X,Y,Z:DEGREES".to_owned())
-}
-
-fn levels(text: &str) -> Result<Levels, String> {
-    let known = Levels::ALL.iter().find(|(name, _)| *name == text);
-    known.map(|(_, levels)| *levels).ok_or_else(|| "expected one or two".to_owned())
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {

@@ -70,6 +70,19 @@ impl Mesh {
         let bounds = Aabb::of_points(positions.iter().copied());
         Self { name: name.into(), positions, triangles, bounds, shading: Shading::default() }
     }
+
+    /// The smallest box around its vertices after a transform.
+    fn bounds_in(&self, world: &Affine3A) -> Aabb {
+        let columns = [world.matrix3.x_axis, world.matrix3.y_axis, world.matrix3.z_axis];
+        // Rounding keeps the order of coordinates that depend on one other alone, so the corners tell of all vertices: a
+        // million copies need not be gone through vertex by vertex.
+        let lone = |axis: usize| columns.iter().filter(|column| column[axis] != 0.0).count() <= 1;
+        if (0..3).all(lone) && !self.bounds.is_empty() {
+            let corners = [self.bounds.min, self.bounds.max];
+            return Aabb::of_points(corners.map(|corner| world.transform_point3(corner)));
+        }
+        Aabb::of_points(self.positions.iter().map(|position| world.transform_point3(*position)))
+    }
 }
 
 impl Scene {
@@ -137,10 +150,7 @@ impl Scene {
     /// Taken over the placed vertices, so it is as small as an axis-aligned box can be.
     pub fn world_bounds(&self) -> Vec<Aabb> {
         let place = |(node, world): (&Node, Affine3A)| match node.mesh {
-            Some(mesh) => {
-                let positions = &self.meshes[mesh as usize].positions;
-                Aabb::of_points(positions.iter().map(|position| world.transform_point3(*position)))
-            }
+            Some(mesh) => self.meshes[mesh as usize].bounds_in(&world),
             None => Aabb::EMPTY,
         };
         self.nodes.iter().zip(self.world_transforms()).map(place).collect()
@@ -183,5 +193,30 @@ impl Scene {
         placed.fold((0, 0), |(count, triangles), mesh| {
             (count + 1, triangles + self.meshes[mesh as usize].triangles.len())
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::SplitMix64;
+    use glam::Mat3A;
+
+    #[test]
+    fn boxes_of_placed_meshes_are_those_of_their_vertices() {
+        let mut random = SplitMix64::new(1);
+        let mut draw = || random.between(-3.0, 3.0) as f32;
+        let positions: Vec<Vec3> = (0..200).map(|_| Vec3::new(draw(), draw(), draw())).collect();
+        let mesh = Mesh::new("m", positions, Vec::new());
+        let turn = Mat3A::from_rotation_z(0.3);
+        let along = Mat3A::from_cols(-glam::Vec3A::Z * 0.3, glam::Vec3A::ZERO, glam::Vec3A::X * 7.1);
+        for matrix3 in
+            [Mat3A::IDENTITY, along, turn, Mat3A::ZERO, Mat3A::from_diagonal(Vec3::new(-0.1, 3.0, 1e-9))]
+        {
+            let world = Affine3A { matrix3, translation: glam::Vec3A::new(0.7, -1e5, 3e-3) };
+            let expected = Aabb::of_points(mesh.positions.iter().map(|at| world.transform_point3(*at)));
+            assert_eq!(mesh.bounds_in(&world), expected);
+        }
+        assert!(Mesh::new("none", Vec::new(), Vec::new()).bounds_in(&Affine3A::IDENTITY).is_empty());
     }
 }

@@ -1,7 +1,5 @@
 //! What is modelled beside meshes: spheres and cones, in the world's own space or, as flocks, in one of their own.
 
-use glam::Vec3;
-
 use crate::geometry::hit::Cone;
 use crate::geometry::{Aabb, Sphere};
 

@@ -46,6 +46,15 @@ impl Levels {
     pub const ALL: &[(&str, Self)] = &[("one", Self::One), ("two", Self::Two)];
 }
 
+impl std::str::FromStr for Levels {
+    type Err = &'static str;
+
+    fn from_str(word: &str) -> Result<Self, Self::Err> {
+        let known = Self::ALL.iter().find(|(name, _)| *name == word);
+        known.map(|(_, levels)| *levels).ok_or("expected one or two")
+    }
+}
+
 enum Triangles {
     Watertight(Meshes<Watertight>),
     Fast(Meshes<Fast>),

@@ -38,9 +38,11 @@ pub(crate) fn render(words: &RenderWords) -> Result<()> {
     scene.warnings.iter().for_each(|warning| print::note(warning));
     let (width, height) = words.size;
     let aspect = width as f32 / height as f32;
+    let items = World::count(&scene);
+    anyhow::ensure!(u32::try_from(items).is_ok(), "{items} triangles and spheres are more than 2^32 - 1");
     let mut world = World::new(scene);
     let mut builder = Builder::new(BUILDER, &Settings::default())?;
-    let hierarchy = Hierarchy::new(world.items(), &mut builder, TriangleKind::Watertight)?;
+    let hierarchy = Hierarchy::of(&world, words.levels, &mut builder, TriangleKind::Watertight)?;
     let scene = world.scene();
     let within = || scene.view.is_none().then(|| view_within(&world, &hierarchy, aspect)).flatten();
     let camera = match &words.camera {

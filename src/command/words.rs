@@ -1,6 +1,7 @@
 //! The words of the command line.
 
 use super::list::EXPERIMENTS;
+use apportion::job::trace::Levels;
 use apportion::measure::{Known, MeasureError, Selection, Shelf};
 use apportion::record::METRICS;
 use apportion::scheme::tiles;
@@ -134,6 +135,10 @@ pub(crate) struct RenderWords {
     /// The picture: .png in 8 bits, .pfm or .exr in linear 32-bit floats [default: the scene's name, .png].
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+    /// Over what the hierarchy is: `one` over all triangles in the world, or `two` levels, one over places of meshes that
+    /// each have their own. Two take less memory where meshes stand more than once; one is faster.
+    #[arg(long, value_name = "one|two", default_value = "one")]
+    pub(crate) levels: Levels,
     /// How many times light is followed through mirrors and glass.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(0..=64))]
     pub(crate) depth: u32,

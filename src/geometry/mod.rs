@@ -28,6 +28,6 @@ pub use frustum::Frustum;
 pub use lanes::Unit;
 pub use overlap::Overlap;
 pub use plane::{PLANE_COUNT, Plane};
-pub use ray::{Hit, Ray};
+pub use ray::{FineRay, Hit, Ray};
 pub use rigid::Rigid;
 pub use volume::{KDop, Movable, Obb, Sphere, Volume};

@@ -1,6 +1,6 @@
 //! Rays, and where they end.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// A ray: the points `origin + t * direction` with `near <= t <= far`.
 ///
@@ -41,4 +41,33 @@ pub struct Hit {
     pub v: f32,
     /// Which item, by number in what was built over.
     pub item: u32,
+}
+
+/// A ray in f64: what one is in the space of something that was placed, before it is rounded. Its ends count as those of
+/// the ray it was made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FineRay {
+    /// Where it starts, in metres of its space.
+    pub origin: DVec3,
+    /// Where it goes, for each 1 of `t`.
+    pub direction: DVec3,
+    /// From where on.
+    pub near: f32,
+    /// To where.
+    pub far: f32,
+}
+
+impl FineRay {
+    /// The nearest there is in f32.
+    pub fn rounded(&self) -> Ray {
+        let (origin, direction) = (self.origin.as_vec3(), self.direction.as_vec3());
+        Ray { origin, direction, near: self.near, far: self.far }
+    }
+}
+
+impl From<&Ray> for FineRay {
+    fn from(ray: &Ray) -> Self {
+        let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        Self { origin, direction, near: ray.near, far: ray.far }
+    }
 }

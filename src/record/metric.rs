@@ -248,6 +248,12 @@ pub const METRICS: &[Metric] = {
         declare("structure_time", "ns", Lower, "Median time of building the binary hierarchy over the triangles."),
         declare("structure_rate", "Mtriangles/s", Higher, "Millions of triangles built into it a second."),
         declare("collapse_time", "ns", Lower, "Median time of making the wide hierarchy of the binary one."),
+        declare(
+            "hierarchy_time",
+            "ns",
+            Lower,
+            "Time of making all hierarchies that rays of pictures go through, from the scene on, once a cell.",
+        ),
         declare("structure_bytes", "B", Lower, "Memory of the hierarchies that rays go through."),
         declare(
             "mover_x",

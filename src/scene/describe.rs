@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Materials, Mesh, Node, Primitive, Scene};
+use super::{Flock, Materials, Mesh, Node, Primitive, Scene};
 
 /// What a scene holds. How unbalanced the tree over it is, the statistics of the structure room say.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -27,7 +27,7 @@ pub struct Description {
     pub instances: usize,
     /// Triangles in the world: a mesh counts each time it is placed.
     pub instanced_triangles: usize,
-    /// Spheres and cones.
+    /// Spheres and cones in the world: a flock counts each time it is placed.
     pub primitives: usize,
     /// Materials.
     pub materials: usize,
@@ -90,7 +90,7 @@ pub fn describe(scene: &Scene) -> Description {
         unique_triangles,
         instances,
         instanced_triangles,
-        primitives: scene.primitives.len(),
+        primitives: scene.primitives_placed(),
         materials: scene.materials.len(),
         textures: scene.textures.len(),
         lights: scene.lights.len(),
@@ -105,6 +105,7 @@ pub fn describe(scene: &Scene) -> Description {
             + 4 * children
             + size_of::<Node>() * scene.nodes.len()
             + size_of::<Primitive>() * scene.primitives.len()
+            + scene.flocks.iter().map(flock_bytes).sum::<usize>()
             + scene.meshes.iter().map(shading_bytes).sum::<usize>()
             + scene.textures.iter().map(|texture| 3 * texture.pixels.len()).sum::<usize>()
             + scene.animation.bytes(),
@@ -113,6 +114,10 @@ pub fn describe(scene: &Scene) -> Description {
         aspect_p99: percentile(0.99),
         zero_area: instanced_triangles - aspects.len(),
     }
+}
+
+fn flock_bytes(flock: &Flock) -> usize {
+    size_of::<Primitive>() * flock.primitives.len() + 4 * flock.nodes.len()
 }
 
 fn shading_bytes(mesh: &Mesh) -> usize {

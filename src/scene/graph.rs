@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Vec3};
 
-use super::{Animation, Material, PointLight, Primitive, Shading, Texture, View};
+use super::{Animation, Flock, Material, PointLight, Primitive, Shading, Texture, View};
 use crate::geometry::Aabb;
 
 /// A scene: a forest of nodes that place meshes in the world.
@@ -18,6 +18,8 @@ pub struct Scene {
     pub roots: Vec<u32>,
     /// Spheres and cones, which hang on no node: only rays see them.
     pub primitives: Vec<Primitive>,
+    /// Spheres and cones that hang on nodes.
+    pub flocks: Vec<Flock>,
     /// What surfaces are made of.
     pub materials: Vec<Material>,
     /// Pictures laid on surfaces.
@@ -71,6 +73,19 @@ impl Mesh {
     pub fn new(name: impl Into<String>, positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let bounds = Aabb::of_points(positions.iter().copied());
         Self { name: name.into(), positions, triangles, bounds, shading: Shading::default() }
+    }
+
+    /// The smallest box around its vertices after a transform.
+    fn bounds_in(&self, world: &Affine3A) -> Aabb {
+        let columns = [world.matrix3.x_axis, world.matrix3.y_axis, world.matrix3.z_axis];
+        // Rounding keeps the order of coordinates that depend on one other alone, so the corners tell of all vertices: a
+        // million copies need not be gone through vertex by vertex.
+        let lone = |axis: usize| columns.iter().filter(|column| column[axis] != 0.0).count() <= 1;
+        if (0..3).all(lone) && !self.bounds.is_empty() {
+            let corners = [self.bounds.min, self.bounds.max];
+            return Aabb::of_points(corners.map(|corner| world.transform_point3(corner)));
+        }
+        Aabb::of_points(self.positions.iter().map(|position| world.transform_point3(*position)))
     }
 }
 
@@ -139,10 +154,7 @@ impl Scene {
     /// Taken over the placed vertices, so it is as small as an axis-aligned box can be.
     pub fn world_bounds(&self) -> Vec<Aabb> {
         let place = |(node, world): (&Node, Affine3A)| match node.mesh {
-            Some(mesh) => {
-                let positions = &self.meshes[mesh as usize].positions;
-                Aabb::of_points(positions.iter().map(|position| world.transform_point3(*position)))
-            }
+            Some(mesh) => self.meshes[mesh as usize].bounds_in(&world),
             None => Aabb::EMPTY,
         };
         self.nodes.iter().zip(self.world_transforms()).map(place).collect()
@@ -151,7 +163,32 @@ impl Scene {
     /// The box around everything in the world, in metres; empty for an empty scene.
     pub fn bounds(&self) -> Aabb {
         let primitives = self.primitives.iter().map(|primitive| primitive.shape.bounds());
-        self.world_bounds().into_iter().chain(primitives).fold(Aabb::EMPTY, Aabb::union)
+        let all = self.world_bounds().into_iter().chain(primitives).fold(Aabb::EMPTY, Aabb::union);
+        self.flock_bounds().into_iter().fold(all, |all, (_, bounds)| all.union(bounds))
+    }
+
+    /// Nodes that place flocks, flock by flock, and the box around what each places in the world, in metres: that around
+    /// the flock's own box, so it may be larger than need be. The scene must be valid.
+    pub fn flock_bounds(&self) -> Vec<(u32, Aabb)> {
+        if self.flocks.is_empty() {
+            return Vec::new();
+        }
+        let world = self.world_transforms();
+        let of = |flock: &Flock| {
+            let own = flock.bounds();
+            flock
+                .nodes
+                .iter()
+                .map(|node| (*node, own.transformed(&world[*node as usize])))
+                .collect::<Vec<_>>()
+        };
+        self.flocks.iter().flat_map(of).collect()
+    }
+
+    /// How many spheres and cones there are in the world: those of a flock count for each node that places it.
+    pub fn primitives_placed(&self) -> usize {
+        let placed = self.flocks.iter().map(|flock| flock.primitives.len() * flock.nodes.len());
+        self.primitives.len() + placed.sum::<usize>()
     }
 
     /// How many nodes place a mesh, and how many triangles that makes, shared meshes counted each time.
@@ -160,5 +197,30 @@ impl Scene {
         placed.fold((0, 0), |(count, triangles), mesh| {
             (count + 1, triangles + self.meshes[mesh as usize].triangles.len())
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::SplitMix64;
+    use glam::Mat3A;
+
+    #[test]
+    fn boxes_of_placed_meshes_are_those_of_their_vertices() {
+        let mut random = SplitMix64::new(1);
+        let mut draw = || random.between(-3.0, 3.0) as f32;
+        let positions: Vec<Vec3> = (0..200).map(|_| Vec3::new(draw(), draw(), draw())).collect();
+        let mesh = Mesh::new("m", positions, Vec::new());
+        let turn = Mat3A::from_rotation_z(0.3);
+        let along = Mat3A::from_cols(-glam::Vec3A::Z * 0.3, glam::Vec3A::ZERO, glam::Vec3A::X * 7.1);
+        for matrix3 in
+            [Mat3A::IDENTITY, along, turn, Mat3A::ZERO, Mat3A::from_diagonal(Vec3::new(-0.1, 3.0, 1e-9))]
+        {
+            let world = Affine3A { matrix3, translation: glam::Vec3A::new(0.7, -1e5, 3e-3) };
+            let expected = Aabb::of_points(mesh.positions.iter().map(|at| world.transform_point3(*at)));
+            assert_eq!(mesh.bounds_in(&world), expected);
+        }
+        assert!(Mesh::new("none", Vec::new(), Vec::new()).bounds_in(&Affine3A::IDENTITY).is_empty());
     }
 }

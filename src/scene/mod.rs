@@ -29,6 +29,6 @@ pub use generate::{Aisles, GENERATORS, Generator, by_name};
 pub use graph::{Mesh, Node, Scene};
 pub use movers::Movers;
 pub use path::{CameraPath, PATHS, PathKind, Waypoint};
-pub use primitive::{Primitive, Shape};
+pub use primitive::{Flock, Primitive, Shape};
 pub use random::SplitMix64;
 pub use shading::{Corners, Material, Materials, PointLight, Shading, Texture, View};

@@ -1,6 +1,4 @@
-//! What is modelled beside meshes: spheres and cones, in the world's own space.
-
-use glam::Vec3;
+//! What is modelled beside meshes: spheres and cones, in the world's own space or, as flocks, in one of their own.
 
 use crate::geometry::hit::Cone;
 use crate::geometry::{Aabb, Sphere};
@@ -14,13 +12,34 @@ pub enum Shape {
     Cone(Cone),
 }
 
-/// A sphere or cone in the world.
+/// A sphere or cone in the world, or in the space of its flock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Primitive {
     /// Its shape and place, in metres.
     pub shape: Shape,
     /// What it is made of, by number among the scene's materials; the default one where absent.
     pub material: Option<u32>,
+}
+
+/// Spheres and cones in a space of their own, which nodes place in the world as they place meshes: those that stand in
+/// many places are held once. Only rays see them. A transform that does not keep lengths alike makes them what it makes
+/// of them; one without an inverse makes nothing of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Flock {
+    /// What it is called; need not be unique.
+    pub name: String,
+    /// What it is made of.
+    pub primitives: Vec<Primitive>,
+    /// The nodes that place it, by number, each once.
+    pub nodes: Vec<u32>,
+}
+
+impl Flock {
+    /// A box around it in its own space, in metres; empty if there is nothing in it.
+    pub fn bounds(&self) -> Aabb {
+        let boxes = self.primitives.iter().map(|primitive| primitive.shape.bounds());
+        boxes.fold(Aabb::EMPTY, Aabb::union)
+    }
 }
 
 impl Shape {
@@ -31,14 +50,6 @@ impl Shape {
                 Aabb { min: sphere.centre - sphere.radius, max: sphere.centre + sphere.radius }
             }
             Self::Cone(cone) => cone.bounds(),
-        }
-    }
-
-    /// The same somewhere else, so many metres away.
-    pub(super) fn moved(self, by: Vec3) -> Self {
-        match self {
-            Self::Sphere(sphere) => Self::Sphere(Sphere { centre: sphere.centre + by, ..sphere }),
-            Self::Cone(cone) => Self::Cone(Cone { base: cone.base + by, tip: cone.tip + by, ..cone }),
         }
     }
 

@@ -2,11 +2,11 @@
 
 use glam::{Affine3A, Vec3};
 
-use super::{Animation, PointLight, Primitive, Scene};
+use super::{Animation, Flock, PointLight, Scene};
 
 impl Scene {
     /// So many copies of the scene on a level grid as near to a square as can be, row after row. They
-    /// share their meshes, bring their lights, and move all in step. `spacing` is the way from copy to copy in units of the scene's greater extent
+    /// share their meshes, spheres and cones, bring their lights, and move all in step. `spacing` is the way from copy to copy in units of the scene's greater extent
     /// along x and z: at 1 they touch. It goes by another name, as it is another scene; one copy is the
     /// scene itself.
     pub fn repeated(self, copies: u32, spacing: f32) -> Self {
@@ -16,6 +16,9 @@ impl Scene {
         let size = self.bounds().size();
         let (pitch, columns) = (size.x.max(size.z) * spacing, f64::from(copies).sqrt().ceil() as u32);
         let mut scene = Self::new(format!("{copies} x {}", self.name));
+        let mut alone = Flock { name: self.name, primitives: self.primitives, nodes: Vec::new() };
+        let bare = |flock: &Flock| Flock { nodes: Vec::new(), ..flock.clone() };
+        scene.flocks = self.flocks.iter().map(bare).collect();
         let (mut followers, mut lights) = (Vec::new(), Vec::new());
         for copy in 0..copies {
             let place = Vec3::new((copy % columns) as f32, 0.0, (copy / columns) as f32) * pitch;
@@ -31,15 +34,18 @@ impl Scene {
                 node.children.iter_mut().for_each(|child| *child += first);
                 node
             }));
-            scene.primitives.extend(
-                self.primitives
-                    .iter()
-                    .map(|primitive| Primitive { shape: primitive.shape.moved(place), ..*primitive }),
-            );
+            // Those that hung on no node hang on the copy's.
+            alone.nodes.push(root);
+            for (flock, own) in scene.flocks.iter_mut().zip(&self.flocks) {
+                flock.nodes.extend(own.nodes.iter().map(|node| node + first));
+            }
             let standing = self.lights.iter();
             scene
                 .lights
                 .extend(standing.map(|light| PointLight { position: light.position + place, ..*light }));
+        }
+        if !alone.primitives.is_empty() {
+            scene.flocks.push(alone);
         }
         Self {
             meshes: self.meshes,
@@ -77,6 +83,18 @@ mod tests {
         }
         assert_eq!(scene.clone().repeated(1, 2.0).name, "factory-small");
         assert_eq!(scene.repeated(7, 2.0).name, "7 x factory-small");
+    }
+
+    #[test]
+    fn copies_share_spheres_too() {
+        let scene = by_name("spheres-10k").unwrap();
+        let bounds = scene.bounds();
+        let twice = scene.clone().repeated(4, 1.5).repeated(3, 1.0);
+        twice.validate().unwrap();
+        assert_eq!((twice.primitives.len(), twice.flocks.len()), (0, 1));
+        assert_eq!((twice.flocks[0].nodes.len(), twice.primitives_placed()), (12, 120_000));
+        let size = twice.bounds().size() / bounds.size();
+        assert!((size - Vec3::new(5.0, 1.0, 5.0)).abs().max_element() < 1e-3, "{size}");
     }
 
     #[test]

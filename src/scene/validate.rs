@@ -21,7 +21,9 @@ impl Scene {
         self.check_nodes(file)?;
         self.check_forest(file)?;
         self.check_animation(file)?;
-        for (index, bounds) in self.world_bounds().into_iter().enumerate() {
+        let of_meshes = self.world_bounds().into_iter().enumerate();
+        let of_flocks = self.flock_bounds().into_iter().map(|(node, bounds)| (node as usize, bounds));
+        for (index, bounds) in of_meshes.chain(of_flocks) {
             let finite = bounds.min.is_finite() && bounds.max.is_finite();
             if !finite && !bounds.is_empty() {
                 return Err(SceneError::malformed(
@@ -108,8 +110,19 @@ impl Scene {
                 return fail(format!("texture {index} {:?}", texture.name), found, "all of them".to_owned());
             }
         }
-        for (index, primitive) in self.primitives.iter().enumerate() {
-            let place = || format!("primitive {index}");
+        let flocks = self.flocks.iter().enumerate().flat_map(|(number, flock)| {
+            flock
+                .primitives
+                .iter()
+                .enumerate()
+                .map(move |(index, primitive)| (Some(number), index, primitive))
+        });
+        let alone = self.primitives.iter().enumerate().map(|(index, primitive)| (None, index, primitive));
+        for (flock, index, primitive) in alone.chain(flocks) {
+            let place = || match flock {
+                Some(flock) => format!("flock {flock}, primitive {index}"),
+                None => format!("primitive {index}"),
+            };
             if !primitive.shape.is_sound() {
                 let found = format!("{:?}", primitive.shape);
                 return fail(place(), found, "finite numbers, radii not below 0".to_owned());
@@ -128,6 +141,13 @@ impl Scene {
 
     fn check_nodes(&self, file: &str) -> Result<(), SceneError> {
         let count = self.nodes.len();
+        for (index, flock) in self.flocks.iter().enumerate() {
+            if let Some(node) = flock.nodes.iter().find(|node| **node as usize >= count) {
+                let place = format!("flock {index} {:?}", flock.name);
+                let (found, expected) = (format!("node {node}"), format!("a node below {count}"));
+                return Err(SceneError::malformed(file, place, found, expected));
+            }
+        }
         for (index, node) in self.nodes.iter().enumerate() {
             let fail = |found: String, expected: String| {
                 Err(SceneError::malformed(file, self.node_place(index), found, expected))
@@ -182,7 +202,8 @@ impl Scene {
 mod tests {
     use glam::{Affine3A, Vec3};
 
-    use super::super::{Mesh, Scene};
+    use super::super::{Flock, Mesh, Primitive, Scene, Shape};
+    use crate::geometry::Sphere;
 
     fn good() -> Scene {
         let mut scene = Scene::new("good");
@@ -199,6 +220,12 @@ mod tests {
         scene.validate().unwrap_err().to_string()
     }
 
+    /// One sphere, placed by the leaf.
+    fn flock(radius: f32) -> Flock {
+        let shape = Shape::Sphere(Sphere { centre: Vec3::X * radius, radius });
+        Flock { primitives: vec![Primitive { shape, material: None }], nodes: vec![1], ..Flock::default() }
+    }
+
     #[test]
     fn each_fault_is_named() {
         let cases = [
@@ -211,6 +238,12 @@ mod tests {
             (message(|s| s.nodes[1].transform.translation.x = f32::NAN), "not finite"),
             (message(|s| s.meshes[0].positions[2].y = f32::NAN), "vertex 2"),
             (message(|s| s.meshes[0].triangles.push([0, 1, 3])), "triangle 1"),
+            (
+                message(|s| s.flocks.push(Flock { nodes: vec![1, 2], ..Flock::default() })),
+                "flock 0 \"\": node 2",
+            ),
+            (message(|s| s.flocks.push(flock(f32::NAN))), "flock 0, primitive 0"),
+            (message(|s| s.flocks.push(flock(f32::MAX))), "overflows"),
             (message(|s| s.nodes.iter_mut().for_each(|n| n.transform.translation.x = f32::MAX)), "overflows"),
         ];
         for (message, part) in &cases {

@@ -16,8 +16,11 @@ fn apportion(folder: &Path, words: &[&str]) -> Output {
 fn a_picture_is_written_whole_and_the_same_for_every_scheme() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut pictures = Vec::new();
-    for (scheme, processors) in [("serial", "1"), ("decreasing_tiles", "2"), ("interleaved", "3")] {
+    for (scheme, processors, levels) in
+        [("serial", "1", "one"), ("decreasing_tiles", "2", "two"), ("interleaved", "3", "one")]
+    {
         let words = ["render", "corner", "--size", "45x30", "--scheme", scheme, "--processors", processors];
+        let words = [&words[..], &["--levels", levels]].concat();
         let output = apportion(folder.path(), &[&words[..], &["--out", "a.pfm"]].concat());
         let (said, wrong) =
             (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
@@ -43,6 +46,7 @@ fn words_that_are_off_and_files_that_are_not_there_are_told() {
         (&["cornre"], 2, "did you mean corner?"),
         (&["corner", "--scheme", "lock_free"], 2, "no scheme `lock_free` for tiles"),
         (&["corner", "--size", "0x5"], 2, "640x480"),
+        (&["corner", "--levels", "three"], 2, "expected one or two"),
         (&["corner", "--camera", "1,2,3"], 2, "X,Y,Z:X,Y,Z"),
         (&["corner", "--camera", "1,2,3:1,2,3"], 2, "the point looked at is the eye"),
         (&["gone.obj"], 1, "gone.obj: cannot be read"),

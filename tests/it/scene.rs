@@ -33,7 +33,11 @@ fn fingerprint(scene: &Scene) -> u64 {
         // Adding 0 makes -0 and 0, which are the same place, the same bytes.
         node.transform.to_cols_array().iter().for_each(|number| add(&(number + 0.0).to_le_bytes()));
     }
-    for primitive in &scene.primitives {
+    for node in scene.flocks.iter().flat_map(|flock| &flock.nodes) {
+        add(&node.to_le_bytes());
+    }
+    let placed = scene.flocks.iter().flat_map(|flock| &flock.primitives);
+    for primitive in scene.primitives.iter().chain(placed) {
         let numbers = match primitive.shape {
             Shape::Sphere(ball) => [ball.centre.to_array(), [ball.radius, 0.0, 0.0]].concat(),
             Shape::Cone(cone) => {

@@ -1,5 +1,6 @@
 //! A ray made ready for tests.
 
+use super::probe::BEYOND;
 use super::scale::{Scale, inverse, to_one};
 use crate::geometry::Ray;
 use crate::geometry::lanes::Lanes;
@@ -9,7 +10,7 @@ use glam::Vec3;
 pub(super) const SLACK: f32 = 1.0 / (1 << 20) as f32;
 /// A part of the direction below this, as a share of the greatest, counts as none: over the length of a ray it comes
 /// to less than the rounding of its origin.
-const LEAST_PART: f32 = 1.0 / (1u128 << 100) as f32;
+pub(super) const LEAST_PART: f32 = 1.0 / (1u128 << 100) as f32;
 
 /// A ray in a scale's lengths, its direction's greatest part between 1 and 2, and what tests ask of it.
 #[derive(Clone, Copy, Debug)]
@@ -78,6 +79,13 @@ impl Aim {
             stretch,
             start,
         })
+    }
+
+    /// How far a box may begin, in its lengths, that has a point at or before `t`, as the ray it was made of counts.
+    #[inline]
+    pub(crate) fn reach(&self, t: f32) -> f32 {
+        let reach = (f64::from(t) - f64::from(self.start)) / f64::from(self.stretch);
+        ((reach * (1.0 + BEYOND)) as f32).min(f32::MAX)
     }
 
     /// A distance along it as the ray it was made of counts.

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::first_within;
-use crate::geometry::{Aabb, Ray};
+use crate::geometry::{Aabb, FineRay};
 
 /// The side of a cut-off cone, open at both ends; a cylinder if its radii are equal, a cone if one is 0 (the cone of
 /// Haines' Neutral File Format). Metres.
@@ -47,16 +47,17 @@ impl Cone {
 
 /// The least `t` at which a ray meets a cone's side, from outside or from inside. In f64. A cone without length, and a
 /// ray that holds a NaN, meet nothing.
-pub fn cone(ray: &Ray, cone: &Cone) -> Option<f32> {
+pub fn cone(ray: impl Into<FineRay>, cone: &Cone) -> Option<f32> {
+    let ray = ray.into();
     let (axis, length) = cone.axis()?;
-    let direction = ray.direction.as_dvec3();
+    let direction = ray.direction;
     let speed = direction.length();
     if !(speed > 0.0 && speed.is_finite()) {
         return None;
     }
     let direction = direction / speed;
     // From where the ray is nearest to the base, so that from afar nothing cancels.
-    let from = ray.origin.as_dvec3() - cone.base.as_dvec3();
+    let from = ray.origin - cone.base.as_dvec3();
     let skipped = -from.dot(direction);
     let from = from + direction * skipped;
     let slope = (f64::from(cone.tip_radius) - f64::from(cone.base_radius)) / length;
@@ -73,7 +74,7 @@ pub fn cone(ray: &Ray, cone: &Cone) -> Option<f32> {
         // The other half of the double cone lies beyond the ends too.
         if (0.0..=length).contains(&along) { (t + skipped) / speed } else { f64::NAN }
     };
-    first_within(ray, roots.map(on_side))
+    first_within(&ray, roots.map(on_side))
 }
 
 /// Where `a t^2 + 2 b t + c` is 0, without cancellation.
@@ -90,6 +91,7 @@ fn roots(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Ray;
 
     const CYLINDER: Cone = Cone { base: Vec3::ZERO, base_radius: 1.0, tip: Vec3::Y, tip_radius: 1.0 };
     const POINTED: Cone = Cone { base: Vec3::ZERO, base_radius: 1.0, tip: Vec3::Y, tip_radius: 0.0 };

@@ -13,6 +13,7 @@
 mod aim;
 mod cone;
 mod fast;
+mod probe;
 mod scale;
 mod slab;
 mod span;
@@ -26,7 +27,8 @@ pub use sphere::sphere;
 pub use watertight::Watertight;
 
 pub(crate) use aim::{Aim, Beam};
-pub(crate) use slab::slab;
+pub(crate) use probe::Probe;
+pub(crate) use slab::{Sight, slab};
 pub(crate) use span::Span;
 
 use super::lanes::Lanes;
@@ -116,7 +118,7 @@ pub(crate) unsafe fn sides<L: Lanes>(rises: [bool; 3], triangles: &impl Corners<
 }
 
 /// The lesser of two roots that lies on the ray, rounded to f32.
-fn first_within(ray: &super::Ray, roots: [f64; 2]) -> Option<f32> {
+fn first_within(ray: &super::FineRay, roots: [f64; 2]) -> Option<f32> {
     let [a, b] = roots.map(|t| t as f32);
     let within = |t: &f32| *t >= ray.near && *t <= ray.far;
     [a.min(b), a.max(b)].into_iter().find(within)

@@ -1,19 +1,20 @@
 //! Where a ray meets a sphere.
 
 use super::first_within;
-use crate::geometry::{Ray, Sphere};
+use crate::geometry::{FineRay, Sphere};
 
 /// The least `t` at which a ray meets a sphere's surface, from outside or from inside.
 ///
 /// In f64, and with the discriminant taken from the distance of the middle from the line (Haines, Günther and
 /// Akenine-Möller, "Precision improvements for ray/sphere intersection", Ray Tracing Gems 2019, ch. 7), so that a small
 /// sphere far away is not lost. A sphere of radius 0 or less, and a ray that holds a NaN, meet nothing.
-pub fn sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
+pub fn sphere(ray: impl Into<FineRay>, sphere: &Sphere) -> Option<f32> {
+    let ray = ray.into();
     if sphere.radius <= 0.0 {
         return None;
     }
-    let direction = ray.direction.as_dvec3();
-    let from = ray.origin.as_dvec3() - sphere.centre.as_dvec3();
+    let direction = ray.direction;
+    let from = ray.origin - sphere.centre.as_dvec3();
     let radius = f64::from(sphere.radius);
     let square = direction.length_squared();
     let middle = -from.dot(direction) / square;
@@ -22,16 +23,16 @@ pub fn sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
     // Also false for a direction of length 0 and for what is not a number.
     if left >= 0.0 && square > 0.0 {
         let half = (left / square).sqrt();
-        return first_within(ray, [middle - half, middle + half]);
+        return first_within(&ray, [middle - half, middle + half]);
     }
     None
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
+    use crate::geometry::Ray;
+    use glam::Vec3;
 
     const UNIT: Sphere = Sphere { centre: Vec3::ZERO, radius: 1.0 };
 

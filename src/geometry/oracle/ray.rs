@@ -1,6 +1,6 @@
 //! Where a ray meets triangles, in f64: the oracle of the ray tests. Slow and plain on purpose.
 
-use super::super::Ray;
+use super::super::{FineRay, Ray};
 use glam::{DVec3, Vec3};
 
 /// Where a ray meets a triangle's plane, in f64.
@@ -18,8 +18,13 @@ impl Crossing {
     /// Where a ray's line meets a triangle's plane, corners in metres; `None` if they are parallel, or the triangle has
     /// no area, or something is not finite.
     pub fn of(ray: &Ray, triangle: &[Vec3; 3]) -> Option<Self> {
-        let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
-        let [a, b, c] = triangle.map(|corner| corner.as_dvec3() - origin);
+        Self::of_fine(&FineRay::from(ray), &triangle.map(|corner| corner.as_dvec3()))
+    }
+
+    /// The same of what is known in f64.
+    pub fn of_fine(ray: &FineRay, triangle: &[DVec3; 3]) -> Option<Self> {
+        let direction = ray.direction;
+        let [a, b, c] = triangle.map(|corner| corner - ray.origin);
         let normal = (b - a).cross(c - a);
         let slope = normal.dot(direction);
         let steepness = slope.abs() / (normal.length() * direction.length());

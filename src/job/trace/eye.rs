@@ -98,11 +98,10 @@ const BACK: f32 = 0.8;
 pub fn view_within(world: &World, intersector: &dyn Intersector, aspect: f32) -> Option<Camera> {
     let bounds = world.scene().bounds();
     let (middle, size) = (bounds.centre(), bounds.half_diagonal());
-    let triangles = &world.items().triangles;
     let is_front = |direction: Vec3| {
         let hit = intersector.closest(&Ray::new(middle, direction));
-        let corners = hit.and_then(|hit| triangles.get(hit.item as usize));
-        corners.is_some_and(|[a, b, c]| (*b - *a).cross(*c - *a).dot(direction) < 0.0)
+        let corners = hit.and_then(|hit| world.corners(hit.item));
+        corners.is_some_and(|[a, b, c]| (b - a).cross(c - a).dot(direction) < 0.0)
     };
     // Points of a sphere, evenly spread (Fibonacci's spiral).
     let about = (0..ABOUT).map(|step| {

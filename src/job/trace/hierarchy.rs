@@ -1,21 +1,18 @@
 //! The fast answer for rays: hierarchies over the items.
 
-use crate::geometry::hit::{Fast, Watertight};
-use crate::geometry::{Aabb, Hit, Ray};
+use crate::geometry::hit::{Fast, TriangleTest, Watertight};
+use crate::geometry::{Hit, Ray};
 use crate::scene::Primitive;
 use crate::structure::bvh::build::{BuildError, Builder, Input};
-use crate::structure::bvh::{BinaryBvh, Intersector, RayCounts, WideBvh};
+use crate::structure::bvh::{BinaryBvh, Instances, Intersector, RayCounts, WideBvh};
 
-use super::Items;
-use super::list::primitive;
+use super::flocks::{Flocks, Stand};
+use super::{Items, World};
 
-/// A wide hierarchy over the triangles, and a binary one over the other shapes.
+/// A hierarchy over the triangles, and one over the other shapes.
 pub struct Hierarchy {
     triangles: Triangles,
-    others: BinaryBvh,
-    primitives: Vec<Primitive>,
-    /// The number of the first shape that is no triangle.
-    first: u32,
+    others: Flocks,
 }
 
 /// By which test rays meet triangles.
@@ -33,27 +30,56 @@ impl TriangleKind {
     pub const ALL: &[(&str, Self)] = &[("watertight", Self::Watertight), ("fast", Self::Fast)];
 }
 
-enum Triangles {
-    Watertight(WideBvh<Watertight>),
-    Fast(WideBvh<Fast>),
+/// What a hierarchy over triangles is built over. Flocks always have two levels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Levels {
+    /// All triangles in the world: rays go through it fastest.
+    #[default]
+    One,
+    /// Each mesh in its own space, and the places of meshes: a mesh is held once however often it stands, and what moves
+    /// as it is costs no more than its place.
+    Two,
 }
 
-/// The same of either kind.
-macro_rules! either {
+impl Levels {
+    /// Every choice with its name in settings.
+    pub const ALL: &[(&str, Self)] = &[("one", Self::One), ("two", Self::Two)];
+}
+
+impl std::str::FromStr for Levels {
+    type Err = &'static str;
+
+    fn from_str(word: &str) -> Result<Self, Self::Err> {
+        let known = Self::ALL.iter().find(|(name, _)| *name == word);
+        known.map(|(_, levels)| *levels).ok_or("expected one or two")
+    }
+}
+
+enum Triangles {
+    Watertight(Meshes<Watertight>),
+    Fast(Meshes<Fast>),
+}
+
+/// One level, or two.
+enum Meshes<T: TriangleTest> {
+    One(WideBvh<T>),
+    Two(Instances<T>),
+}
+
+/// The same of each kind.
+macro_rules! each {
     ($triangles:expr, $bvh:ident => $what:expr) => {
-        match &$triangles {
-            Triangles::Watertight($bvh) => $what,
-            Triangles::Fast($bvh) => $what,
+        match $triangles {
+            Triangles::Watertight(Meshes::One($bvh)) => $what,
+            Triangles::Watertight(Meshes::Two($bvh)) => $what,
+            Triangles::Fast(Meshes::One($bvh)) => $what,
+            Triangles::Fast(Meshes::Two($bvh)) => $what,
         }
     };
 }
 
-/// How much wider than a shape its box is taken, as a share of its greatest coordinate: the box is written in f32, and
-/// the shape's own test rounds in f64.
-const ROOM: f32 = 4.0 * f32::EPSILON;
-
 impl Hierarchy {
-    /// Hierarchies over all items.
+    /// Hierarchies over all items, of one level over the triangles.
     ///
     /// # Errors
     /// [`BuildError`]: an item has no box.
@@ -75,76 +101,123 @@ impl Hierarchy {
         kind: TriangleKind,
     ) -> Result<Self, BuildError> {
         let triangles = match kind {
-            TriangleKind::Watertight => Triangles::Watertight(WideBvh::new(binary, &items.triangles)),
-            TriangleKind::Fast => Triangles::Fast(WideBvh::new(binary, &items.triangles)),
+            TriangleKind::Watertight => {
+                Triangles::Watertight(Meshes::One(WideBvh::new(binary, &items.triangles)))
+            }
+            TriangleKind::Fast => Triangles::Fast(Meshes::One(WideBvh::new(binary, &items.triangles))),
         };
-        let boxes: Vec<Aabb> = items.primitives.iter().map(roomy).collect();
-        let mut others = BinaryBvh::default();
-        builder.build(&Input::of(&boxes), &mut others)?;
-        let first = items.triangles.len() as u32;
-        Ok(Self { triangles, others, primitives: items.primitives.clone(), first })
+        let flocks: Vec<&[Primitive]> = items.flocks.iter().map(Vec::as_slice).collect();
+        let mut next = items.triangles.len() + items.primitives.len();
+        let places = items.places.iter().map(|(flock, transform)| {
+            let first = next as u32;
+            next += items.flocks[*flock as usize].len();
+            Stand { flock: *flock, first, transform: Some(*transform) }
+        });
+        let others = others(&items.primitives, items.triangles.len(), &flocks, places, builder)?;
+        Ok(Self { triangles, others })
+    }
+
+    /// Hierarchies over a world, of one level or of two. Of two, its items are not listed one by one.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::new`].
+    pub fn of(
+        world: &World,
+        levels: Levels,
+        builder: &mut Builder,
+        kind: TriangleKind,
+    ) -> Result<Self, BuildError> {
+        if levels == Levels::One {
+            return Self::new(world.items(), builder, kind);
+        }
+        let (meshes, places) = (&world.scene().meshes, world.placements());
+        let triangles = match kind {
+            TriangleKind::Watertight => {
+                Triangles::Watertight(Meshes::Two(Instances::new(meshes, places, builder)?))
+            }
+            TriangleKind::Fast => Triangles::Fast(Meshes::Two(Instances::new(meshes, places, builder)?)),
+        };
+        Ok(Self { triangles, others: others_of(world, builder)? })
+    }
+
+    /// Follows a world that has been updated ([`World::update`]) with those meshes `changed`: of two levels, only their
+    /// hierarchies and the one over places are built anew; of one, all.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::new`]; then it is of no use.
+    pub fn update(
+        &mut self,
+        world: &World,
+        changed: &[u32],
+        builder: &mut Builder,
+    ) -> Result<(), BuildError> {
+        let (meshes, places) = (&world.scene().meshes, world.placements());
+        match &mut self.triangles {
+            Triangles::Watertight(Meshes::Two(bvh)) => bvh.update(meshes, changed, places, builder)?,
+            Triangles::Fast(Meshes::Two(bvh)) => bvh.update(meshes, changed, places, builder)?,
+            Triangles::Watertight(Meshes::One(_)) => {
+                *self = Self::new(world.items(), builder, TriangleKind::Watertight)?;
+                return Ok(());
+            }
+            Triangles::Fast(Meshes::One(_)) => {
+                *self = Self::new(world.items(), builder, TriangleKind::Fast)?;
+                return Ok(());
+            }
+        }
+        self.others = others_of(world, builder)?;
+        Ok(())
     }
 
     /// What a ray meets first among the triangles alone, and what it took to find it, which is added to `counts`.
     pub fn triangle_counted(&self, ray: &Ray, counts: &mut RayCounts) -> Option<Hit> {
-        either!(self.triangles, bvh => bvh.closest_counted(ray, counts))
+        each!(&self.triangles, bvh => bvh.closest_counted(ray, counts))
     }
 
     /// How many bytes the hierarchies take.
     pub fn bytes(&self) -> usize {
-        either!(self.triangles, bvh => bvh.bytes()) + self.others.statistics().bytes
+        each!(&self.triangles, bvh => bvh.bytes()) + self.others.bytes()
     }
 }
 
-/// A box around a shape, with room for rounding.
-fn roomy(primitive: &Primitive) -> Aabb {
-    let bounds = primitive.shape.bounds();
-    let room = bounds.min.abs().max(bounds.max.abs()).max_element() * ROOM;
-    Aabb { min: bounds.min - room, max: bounds.max + room }
+/// Hierarchies over what is no triangle: the world's own shapes are one more flock, numbered before the others.
+fn others(
+    primitives: &[Primitive],
+    first: usize,
+    flocks: &[&[Primitive]],
+    places: impl Iterator<Item = Stand>,
+    builder: &mut Builder,
+) -> Result<Flocks, BuildError> {
+    let flocks = [&[primitives], flocks].concat();
+    let own = Stand { flock: 0, first: first as u32, transform: None };
+    let places = places.map(|stand| Stand { flock: stand.flock + 1, ..stand });
+    Flocks::new(&flocks, std::iter::once(own).chain(places), builder)
 }
 
-impl Hierarchy {
-    /// What is nearest, a triangle that is met being known.
-    fn nearest(&self, ray: &Ray, triangle: Option<Hit>) -> Option<Hit> {
-        let mut nearest = triangle;
-        let ray = Ray { far: nearest.map_or(ray.far, |hit| hit.t), ..*ray };
-        self.others.walk(&ray, |number, far| {
-            let item = self.first + number;
-            let Some([t, u, v]) = primitive(&Ray { far, ..ray }, &self.primitives[number as usize]) else {
-                return far;
-            };
-            // Equally near, the lower number wins.
-            if nearest.is_none_or(|hit| t < hit.t || t == hit.t && item < hit.item) {
-                nearest = Some(Hit { t, u, v, item });
-            }
-            t
-        });
-        nearest
-    }
+fn others_of(world: &World, builder: &mut Builder) -> Result<Flocks, BuildError> {
+    let scene = world.scene();
+    let flocks: Vec<&[Primitive]> = scene.flocks.iter().map(|flock| &flock.primitives[..]).collect();
+    let places = world.flocks().iter();
+    let places =
+        places.map(|run| Stand { flock: run.flock, first: run.first, transform: Some(run.transform) });
+    others(&scene.primitives, world.triangles(), &flocks, places, builder)
 }
 
 impl Intersector for Hierarchy {
     fn closest(&self, ray: &Ray) -> Option<Hit> {
-        self.nearest(ray, either!(self.triangles, bvh => bvh.closest(ray)))
+        let triangle = each!(&self.triangles, bvh => bvh.closest(ray));
+        if self.others.is_empty() { triangle } else { self.others.nearest(ray, triangle) }
     }
 
     fn occluded(&self, ray: &Ray) -> bool {
-        if either!(self.triangles, bvh => bvh.occluded(ray)) {
-            return true;
-        }
-        let mut met = false;
-        self.others.walk(ray, |number, far| {
-            met |= primitive(ray, &self.primitives[number as usize]).is_some();
-            if met { f32::NEG_INFINITY } else { far }
-        });
-        met
+        each!(&self.triangles, bvh => bvh.occluded(ray))
+            || !self.others.is_empty() && self.others.occluded(ray)
     }
 
     fn closest_coherent(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        either!(self.triangles, bvh => bvh.closest_coherent(rays, hits));
-        if !self.primitives.is_empty() {
+        each!(&self.triangles, bvh => bvh.closest_coherent(rays, hits));
+        if !self.others.is_empty() {
             for (ray, hit) in rays.iter().zip(hits) {
-                *hit = self.nearest(ray, *hit);
+                *hit = self.others.nearest(ray, *hit);
             }
         }
     }
@@ -152,7 +225,7 @@ impl Intersector for Hierarchy {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{List, World};
+    use super::super::List;
     use super::*;
     use crate::geometry::Sphere;
     use crate::geometry::hit::Cone;

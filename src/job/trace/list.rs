@@ -2,11 +2,12 @@
 
 use glam::Vec3;
 
-use crate::geometry::{Hit, Ray, hit};
-use crate::scene::{Primitive, Shape};
+use crate::geometry::{FineRay, Hit, Ray, hit};
+use crate::scene::Shape;
 use crate::structure::bvh::Intersector;
 
 use super::Items;
+use super::flocks::way_in;
 
 /// All items, gone through one by one, triangles in f64: what every hierarchy's pictures are held against.
 pub struct List<'a>(pub &'a Items);
@@ -28,20 +29,26 @@ impl Intersector for List<'_> {
 impl List<'_> {
     /// A hit of each item that is met, by number.
     fn hits(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
+        let own = FineRay::from(ray);
         let triangles = self.0.triangles.iter().map(|corners| triangle(ray, corners));
-        let primitives = self.0.primitives.iter().map(|shape| primitive(ray, shape));
-        let hits = triangles.chain(primitives).zip(0..);
+        let primitives = self.0.primitives.iter().map(move |primitive| shape(own, &primitive.shape));
+        let placed = self.0.places.iter().flat_map(move |(flock, transform)| {
+            let own = way_in(transform).map(|(place, _)| place.take_in(ray));
+            self.0.flocks[*flock as usize].iter().map(move |primitive| shape(own?, &primitive.shape))
+        });
+        let without_weights = |t: Option<f32>| t.map(|t| [t, 0.0, 0.0]);
+        let hits = triangles.chain(primitives.chain(placed).map(without_weights)).zip(0..);
         hits.filter_map(|(found, item)| found.map(|[t, u, v]| Hit { t, u, v, item }))
     }
 }
 
-/// Where a ray meets a sphere or cone; its weights are 0.
-pub(super) fn primitive(ray: &Ray, primitive: &Primitive) -> Option<[f32; 3]> {
-    let t = match &primitive.shape {
+/// Where a ray meets a sphere or cone.
+#[inline]
+pub(super) fn shape(ray: FineRay, shape: &Shape) -> Option<f32> {
+    match shape {
         Shape::Sphere(sphere) => hit::sphere(ray, sphere),
         Shape::Cone(cone) => hit::cone(ray, cone),
-    };
-    t.map(|t| [t, 0.0, 0.0])
+    }
 }
 
 /// `t`, `u` and `v` where a ray meets a triangle, from either side, its edges taken as part of it (Möller and Trumbore

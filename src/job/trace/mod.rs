@@ -1,7 +1,8 @@
 //! Ray tracing: a picture of a scene, shared out in tiles (Parker et al. 1999, sec. 2 and 3.1).
 //!
-//! 1. A [`World`] lists what rays can meet: triangles, then spheres and cones, each with its number.
-//! 2. An [`Intersector`](crate::structure::bvh::Intersector) over that list answers for rays: a [`Hierarchy`], or [`List`], the slow one.
+//! 1. A [`World`] numbers what rays can meet: triangles, then spheres and cones.
+//! 2. An [`Intersector`](crate::structure::bvh::Intersector) over that list answers for rays: a [`Hierarchy`], of
+//!    one level or of two, or [`List`], the slow one.
 //! 3. A [`Frame`] is the picture of one camera as independent pieces, tiles of 32 x 4 pixels, for any tile scheme;
 //!    each processor writes the pixels of its own tiles into a [`Film`], and counts its rays.
 //! 4. The [`Image`] is what the film holds, in linear colours, to be written as a file.
@@ -13,6 +14,7 @@ mod costs;
 mod counts;
 mod eye;
 mod film;
+mod flocks;
 mod frame;
 mod hierarchy;
 mod image;
@@ -26,11 +28,13 @@ pub use counts::Counts;
 pub use eye::{Eye, default_view, light_at, view_within};
 pub use film::{Film, MOST_PIXELS};
 pub use frame::{Frame, Tiles};
-pub use hierarchy::{Hierarchy, TriangleKind};
+pub use hierarchy::{Hierarchy, Levels, TriangleKind};
 pub use image::Image;
 pub use list::List;
 pub use shade::{Look, MOST_DEPTH, Tracer};
 pub use world::{Items, World};
 
+#[cfg(test)]
+mod level_tests;
 #[cfg(test)]
 mod tests;

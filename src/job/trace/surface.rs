@@ -2,12 +2,14 @@
 
 use std::sync::LazyLock;
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{Affine3A, DMat3, DVec3, Vec2, Vec3};
 
-use crate::geometry::{Hit, Ray};
-use crate::scene::{Material, Shape, Texture};
+use crate::geometry::{FineRay, Hit, Ray};
+use crate::scene::{Material, Primitive, Shape, Texture};
+use crate::structure::bvh::placed_box;
 
 use super::World;
+use super::flocks::way_in;
 
 /// How far from a surface the rays that leave it start, as a share of the greatest coordinate of the shape: 32 units
 /// in the last place of it. What is computed of a shape is wrong by a few of those, wherever it lies and however large
@@ -37,17 +39,20 @@ impl World {
 
     /// What is where a ray met an item.
     pub(super) fn surface(&self, ray: &Ray, hit: &Hit) -> Surface<'_> {
-        let (item, triangles) = (hit.item as usize, &self.items().triangles);
-        if item < triangles.len() { self.on_triangle(ray, hit) } else { self.on_primitive(ray, hit) }
+        if (hit.item as usize) < self.triangles() {
+            return self.on_triangle(ray, hit);
+        }
+        let (primitive, transform) = self.primitive(hit.item);
+        self.on_primitive(ray, hit.t, primitive, transform)
     }
 
     fn on_triangle(&self, ray: &Ray, hit: &Hit) -> Surface<'_> {
-        let corners = self.items().triangles[hit.item as usize];
+        let placed = self.placed(hit.item);
+        let corners = placed.corners;
         let [a, b, c] = corners.map(|corner| corner.as_dvec3());
         let (u, v) = (f64::from(hit.u), f64::from(hit.v));
         // From the corners and not along the ray, whose error grows with its length.
         let point = (a * (1.0 - u - v) + b * u + c * v).as_vec3();
-        let placed = self.placed(hit.item as usize);
         let facing = || -ray.direction.normalize_or_zero();
         let flat = unit((b - a).cross(c - a)).unwrap_or_else(facing);
         let vertices = placed.mesh.triangles[placed.triangle];
@@ -69,31 +74,50 @@ impl World {
         Surface { point, flat, smooth: smooth.unwrap_or(flat), material, diffuse, apart: APART * greatest }
     }
 
-    fn on_primitive(&self, ray: &Ray, hit: &Hit) -> Surface<'_> {
-        let primitive = self.items().primitives[hit.item as usize - self.items().triangles.len()];
-        let near = ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(hit.t);
-        let facing = || -ray.direction.normalize_or_zero();
-        let (point, normal, greatest) = match primitive.shape {
+    /// On a sphere or cone, in the world or in a space that `transform` takes to it.
+    fn on_primitive(
+        &self,
+        ray: &Ray,
+        t: f32,
+        primitive: &Primitive,
+        transform: Option<&Affine3A>,
+    ) -> Surface<'_> {
+        let way = transform.and_then(way_in);
+        let own = way.map_or_else(|| FineRay::from(ray), |(place, _)| place.take_in(ray));
+        let near = own.origin + own.direction * f64::from(t);
+        let (mut point, mut normal) = match primitive.shape {
             Shape::Sphere(sphere) => {
                 let centre = sphere.centre.as_dvec3();
                 let out = (near - centre).normalize_or_zero();
                 // Back onto the surface: along the ray it is as far off as the ray is long.
-                let point = centre + out * f64::from(sphere.radius);
-                let normal = unit(out).unwrap_or_else(facing);
-                (point.as_vec3(), normal, sphere.centre.abs().max_element() + sphere.radius)
+                (centre + out * f64::from(sphere.radius), unit(out))
             }
-            Shape::Cone(cone) => {
-                let bounds = cone.bounds();
-                let greatest = bounds.min.abs().max(bounds.max.abs()).max_element();
-                // As far off as the ray is long, in its last place.
-                let along = hit.t * ray.direction.abs().max_element();
-                (near.as_vec3(), cone.normal(near.as_vec3()).unwrap_or_else(facing), greatest.max(along))
-            }
+            Shape::Cone(cone) => (near, cone.normal(near.as_vec3())),
         };
-        let material = self.material(primitive.material);
-        let apart = APART * greatest;
-        Surface { point, flat: normal, smooth: normal, material, diffuse: material.diffuse, apart }
+        let mut bounds = primitive.shape.bounds();
+        if let Some(transform) = transform {
+            let matrix = transform.matrix3.as_dmat3();
+            point = matrix * point + Vec3::from(transform.translation).as_dvec3();
+            normal = normal.and_then(|normal| unit(normals(matrix) * normal.as_dvec3()));
+            bounds = placed_box(&bounds, transform);
+        }
+        let mut greatest = bounds.min.abs().max(bounds.max.abs()).max_element();
+        if let Shape::Cone(_) = primitive.shape {
+            // As far off as the ray is long, in its last place.
+            greatest = greatest.max(t * ray.direction.abs().max_element());
+        }
+        let normal = normal.unwrap_or_else(|| -ray.direction.normalize_or_zero());
+        let (material, apart) = (self.material(primitive.material), APART * greatest);
+        let (point, diffuse) = (point.as_vec3(), material.diffuse);
+        Surface { point, flat: normal, smooth: normal, material, diffuse, apart }
     }
+}
+
+/// Takes normals along with their surface, but for their length, also where it is mirrored.
+fn normals(matrix: DMat3) -> DMat3 {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let turned = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+    if x.dot(y.cross(z)) < 0.0 { -turned } else { turned }
 }
 
 /// Of unit length; none if it has no direction.

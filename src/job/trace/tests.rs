@@ -17,7 +17,7 @@ use crate::structure::bvh::Intersector;
 const LENS: Lens = Lens::Symmetric { fov_y: 0.8, aspect: 1.25 };
 
 /// A floor with a texture, a mirror behind, a glass ball, a cylinder, a tilted triangle with bent normals, two lights.
-fn scene(scale: f32) -> (Scene, Camera) {
+pub(super) fn scene(scale: f32) -> (Scene, Camera) {
     let mut scene = Scene::new("corner of everything");
     let checks = [[255, 255, 255], [40, 90, 200], [40, 90, 200], [250, 240, 10]].to_vec();
     scene.textures.push(Texture { name: "checks".into(), width: 2, height: 2, pixels: checks });
@@ -77,7 +77,7 @@ fn plain(scene: &Scene, camera: &Camera, (width, height): (u32, u32), look: Look
     (Image { width, height, pixels }, counts)
 }
 
-fn bits(image: &Image) -> Vec<[u32; 3]> {
+pub(super) fn bits(image: &Image) -> Vec<[u32; 3]> {
     image.pixels.iter().map(|pixel| pixel.map(f32::to_bits)).collect()
 }
 

@@ -1,18 +1,25 @@
 //! What rays can meet in a scene, by number.
 
-use glam::{Mat3, Vec3};
+use std::sync::OnceLock;
+
+use glam::{Affine3A, Mat3, Vec3};
 
 use crate::geometry::Aabb;
-use crate::scene::{PointLight, Primitive, Scene};
+use crate::scene::{Mesh, PointLight, Primitive, Scene};
+use crate::structure::bvh::Placement;
 
-/// The shapes of a scene in world space. Item `i` is triangle `i`, or, after the last triangle, primitive
-/// `i - triangles.len()`.
+/// The shapes of a scene in world space, each triangle listed. Item `i` is triangle `i`; then come the primitives, and
+/// then those of the flocks, place by place.
 #[derive(Clone, Debug, Default)]
 pub struct Items {
     /// Triangles, in metres.
     pub triangles: Vec<[Vec3; 3]>,
     /// Spheres and cones.
     pub primitives: Vec<Primitive>,
+    /// Spheres and cones of flocks, each in the flock's own space, by number of the flock.
+    pub flocks: Vec<Vec<Primitive>>,
+    /// The places of flocks, by number of the flock, in the order of their items.
+    pub places: Vec<(u32, Affine3A)>,
 }
 
 impl Items {
@@ -23,7 +30,8 @@ impl Items {
 
     /// How many there are.
     pub fn len(&self) -> usize {
-        self.triangles.len() + self.primitives.len()
+        let placed = self.places.iter().map(|(flock, _)| self.flocks[*flock as usize].len());
+        self.triangles.len() + self.primitives.len() + placed.sum::<usize>()
     }
 
     /// Whether there are none.
@@ -33,48 +41,99 @@ impl Items {
 }
 
 /// A scene with what is needed to follow rays through it.
+///
+/// Triangles are numbered in the order of the nodes that place them, primitives after them, then flocks in the order of
+/// theirs. Nothing is listed item by item until somebody asks for [`World::items`]: what stands in a million places
+/// takes the memory of one and of its places.
 pub struct World {
     pub(super) scene: Scene,
-    items: Items,
+    items: OnceLock<Items>,
     /// One for each node that places a mesh, in the order of their triangles.
-    runs: Vec<Run>,
+    runs: Vec<Placement>,
+    /// How many triangles there are in all.
+    triangles: usize,
+    flocks: Vec<FlockRun>,
 }
 
-/// The triangles of one node's mesh.
-struct Run {
+/// The items of one node's flock.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FlockRun {
     /// Number of the first of them among the items.
-    first: usize,
-    mesh: u32,
-    /// Takes normals to the world, but for their length.
-    normals: Mat3,
+    pub(super) first: u32,
+    pub(super) flock: u32,
+    pub(super) transform: Affine3A,
 }
 
 /// A triangle as the mesh it belongs to knows it.
 pub(super) struct Placed<'a> {
-    pub(super) mesh: &'a crate::scene::Mesh,
+    pub(super) mesh: &'a Mesh,
     /// By number in the mesh.
     pub(super) triangle: usize,
+    /// In the world.
+    pub(super) corners: [Vec3; 3],
     /// Takes normals to the world, but for their length; a mirrored mesh keeps its normals on their side.
     pub(super) normals: Mat3,
 }
 
 impl World {
-    /// Lists the items of a valid scene, in the order of its nodes.
+    /// Numbers the items of a valid scene.
     ///
     /// # Panics
-    /// If there are 2^32 of them or more.
+    /// If there are 2^32 of them or more; [`World::count`] tells beforehand.
     pub fn new(scene: Scene) -> Self {
-        let (mut triangles, mut runs) = (Vec::with_capacity(scene.instances().1), Vec::new());
-        for (node, world) in scene.nodes.iter().zip(scene.world_transforms()) {
-            let Some(index) = node.mesh else { continue };
-            let mesh = &scene.meshes[index as usize];
-            runs.push(Run { first: triangles.len(), mesh: index, normals: cofactors(world.matrix3.into()) });
-            let place = |vertex: u32| world.transform_point3(mesh.positions[vertex as usize]);
-            triangles.extend(mesh.triangles.iter().map(|corners| corners.map(place)));
+        let mut world =
+            Self { scene, items: OnceLock::new(), runs: Vec::new(), triangles: 0, flocks: Vec::new() };
+        let transforms = world.scene.world_transforms();
+        world.number(&transforms, |_| true);
+        world
+    }
+
+    /// How many items a scene has; a world holds less than 2^32.
+    pub fn count(scene: &Scene) -> usize {
+        scene.instances().1 + scene.primitives_placed()
+    }
+
+    /// Follows what moves: where each node is in the world, by its number; whether what it places is to be seen; and the
+    /// meshes that are others than they were, by number. Items are numbered anew.
+    ///
+    /// # Panics
+    /// If there are not as many transforms as nodes, or is no mesh of such a number, or as [`World::new`].
+    pub fn update(
+        &mut self,
+        transforms: &[Affine3A],
+        is_seen: impl Fn(u32) -> bool,
+        meshes: impl IntoIterator<Item = (u32, Mesh)>,
+    ) {
+        for (number, mesh) in meshes {
+            self.scene.meshes[number as usize] = mesh;
         }
-        let items = Items { triangles, primitives: scene.primitives.clone() };
-        assert!(u32::try_from(items.len()).is_ok(), "items are numbered in 32 bits");
-        Self { scene, items, runs }
+        self.number(transforms, is_seen);
+    }
+
+    fn number(&mut self, transforms: &[Affine3A], is_seen: impl Fn(u32) -> bool) {
+        assert_eq!(transforms.len(), self.scene.nodes.len(), "a transform for each node");
+        self.items = OnceLock::new();
+        let mut next = 0;
+        let mut take = |count: usize| {
+            let first = next;
+            next += count;
+            assert!(u32::try_from(next).is_ok(), "items are numbered in 32 bits");
+            first as u32
+        };
+        self.runs.clear();
+        for (node, (of, transform)) in (0..).zip(self.scene.nodes.iter().zip(transforms)) {
+            let Some(mesh) = of.mesh.filter(|_| is_seen(node)) else { continue };
+            let first = take(self.scene.meshes[mesh as usize].triangles.len());
+            self.runs.push(Placement { mesh, first, transform: *transform });
+        }
+        self.triangles = take(self.scene.primitives.len()) as usize;
+        self.flocks.clear();
+        for (number, flock) in (0..).zip(&self.scene.flocks) {
+            for node in flock.nodes.iter().filter(|node| is_seen(**node)) {
+                let (first, transform) = (take(flock.primitives.len()), transforms[*node as usize]);
+                self.flocks.push(FlockRun { first, flock: number, transform });
+            }
+        }
     }
 
     /// The scene.
@@ -87,21 +146,68 @@ impl World {
         self.scene.lights.push(light);
     }
 
-    /// What rays can meet.
+    /// What rays can meet, one by one: made when it is first asked for, and as large as it comes to.
     pub fn items(&self) -> &Items {
-        &self.items
+        self.items.get_or_init(|| {
+            let mut triangles = Vec::with_capacity(self.triangles);
+            for run in &self.runs {
+                let mesh = &self.scene.meshes[run.mesh as usize];
+                let place = |vertex: u32| run.transform.transform_point3(mesh.positions[vertex as usize]);
+                triangles.extend(mesh.triangles.iter().map(|corners| corners.map(place)));
+            }
+            Items {
+                triangles,
+                primitives: self.scene.primitives.clone(),
+                flocks: self.scene.flocks.iter().map(|flock| flock.primitives.clone()).collect(),
+                places: self.flocks.iter().map(|run| (run.flock, run.transform)).collect(),
+            }
+        })
+    }
+
+    /// How many triangles there are; items of greater numbers are none.
+    pub fn triangles(&self) -> usize {
+        self.triangles
+    }
+
+    /// The corners of a triangle, by item number, in metres; none of what is no triangle.
+    pub fn corners(&self, item: u32) -> Option<[Vec3; 3]> {
+        ((item as usize) < self.triangles).then(|| self.placed(item).corners)
+    }
+
+    /// Where each mesh stands.
+    pub(super) fn placements(&self) -> &[Placement] {
+        &self.runs
+    }
+
+    /// Where each flock stands.
+    pub(super) fn flocks(&self) -> &[FlockRun] {
+        &self.flocks
     }
 
     /// A triangle, by item number.
-    pub(super) fn placed(&self, item: usize) -> Placed<'_> {
+    pub(super) fn placed(&self, item: u32) -> Placed<'_> {
         let run = &self.runs[self.runs.partition_point(|run| run.first <= item) - 1];
         let mesh = &self.scene.meshes[run.mesh as usize];
-        Placed { mesh, triangle: item - run.first, normals: run.normals }
+        let triangle = (item - run.first) as usize;
+        let place = |vertex: u32| run.transform.transform_point3(mesh.positions[vertex as usize]);
+        let corners = mesh.triangles[triangle].map(place);
+        Placed { mesh, triangle, corners, normals: cofactors(run.transform.matrix3.into()) }
+    }
+
+    /// A sphere or cone, by item number; and from its space to the world's, where that is not the same.
+    pub(super) fn primitive(&self, item: u32) -> (&Primitive, Option<&Affine3A>) {
+        let alone = item as usize - self.triangles;
+        if let Some(primitive) = self.scene.primitives.get(alone) {
+            return (primitive, None);
+        }
+        let run = &self.flocks[self.flocks.partition_point(|run| run.first <= item) - 1];
+        let flock = &self.scene.flocks[run.flock as usize];
+        (&flock.primitives[(item - run.first) as usize], Some(&run.transform))
     }
 }
 
 /// The inverse transpose, times the determinant's size: it takes normals along with their surface, and never divides.
-fn cofactors(matrix: Mat3) -> Mat3 {
+pub(super) fn cofactors(matrix: Mat3) -> Mat3 {
     let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     let turned = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
     if x.dot(y.cross(z)) < 0.0 { -turned } else { turned }

@@ -11,8 +11,8 @@ use crate::scene::{CameraPath, Movers, PATHS, Scene};
 use crate::structure::SkipTree;
 use std::ops::RangeInclusive;
 
-/// More would take longer to walk through than anyone waits.
-const COPIES: RangeInclusive<f64> = 1.0..=10_000.0;
+/// A million is what two levels of hierarchies take in; a walk through so many takes longer than anyone waits.
+const COPIES: RangeInclusive<f64> = 1.0..=1_000_000.0;
 /// From all in one place to a thousand widths apart.
 const SPACING: RangeInclusive<f64> = 0.0..=1000.0;
 

@@ -1,7 +1,9 @@
 //! The job `trace`: pictures of a scene, frame by frame, in tiles.
 //!
 //! Settings: `job.size`, `WIDTHxHEIGHT` pixels; `job.tile`, `WIDTHxHEIGHT` pixels of a piece; `job.depth`, bounces
-//! followed; `job.frames_a_run` (1), frames in one run with a barrier between each two, of which a frame's time is the mean; `job.builder`, one of [`BUILDERS`]; `job.triangle` (`watertight`, `fast`). Cameras are those
+//! followed; `job.frames_a_run` (1), frames in one run with a barrier between each two, of which a frame's time is the mean; `job.builder`, one of [`BUILDERS`]; `job.triangle` (`watertight`,
+//! `fast`); `job.levels` (`one`, `two`), whether the hierarchy is one over all triangles in the world or one over places of
+//! meshes that have theirs. Cameras are those
 //! of `scene.path` or of a recorded path; where neither is set, every frame is the scene's own view, or the whole of it.
 //!
 //! On threads every picture is held against the one that one processor makes. On a simulated machine a tile is charged
@@ -14,8 +16,8 @@ use super::{
     load_imbalance, simulated, stage_key, staging,
 };
 use crate::job::trace::{
-    Costed, Counts, Eye, Film, Frame, Hierarchy, Image, Look, MOST_DEPTH, MOST_PIXELS, TileCosts, Tiles,
-    Tracer, TriangleKind, World, default_view,
+    Costed, Counts, Eye, Film, Frame, Hierarchy, Image, Levels, Look, MOST_DEPTH, MOST_PIXELS, TileCosts,
+    Tiles, Tracer, TriangleKind, World, default_view,
 };
 use crate::machine::{Machine, RunError, Simulated, Threads};
 use crate::record::THREADS;
@@ -41,6 +43,8 @@ pub(super) struct TraceStage {
     /// What one processor sees, by frame, once it has been asked.
     pictures: RefCell<Vec<Option<Rc<Image>>>>,
     costs: OnceCell<Vec<(TileCosts, Counts)>>,
+    /// What there is to say of the hierarchy.
+    told: [Sample; 2],
 }
 
 struct Asked {
@@ -50,6 +54,7 @@ struct Asked {
     frames_a_run: usize,
     builder: &'static str,
     triangle: TriangleKind,
+    levels: Levels,
 }
 
 impl Asked {
@@ -71,6 +76,7 @@ impl Asked {
             frames_a_run: settings.number("frames_a_run", 1.0, 1.0..=1000.0)? as usize,
             builder: settings.choice("builder", &names)?,
             triangle: settings.choice("triangle", TriangleKind::ALL)?,
+            levels: settings.choice("levels", Levels::ALL)?,
         };
         settings.finish(cell)?;
         Ok(asked)
@@ -85,15 +91,15 @@ pub(super) fn open(
     let asked = Asked::of(cell)?;
     let of_job: Vec<_> = cell.settings.iter().filter(|(key, _)| key.starts_with("job.")).collect();
     let key = format!("{} {of_job:?}", stage_key(cell, options));
+    let one = cache.team(1)?;
     let stage = match cache.pictures.get(&key) {
         Some(stage) => stage.clone(),
         None => {
-            let stage = Rc::new(TraceStage::new(&asked, cell, options)?);
+            let stage = Rc::new(TraceStage::new(&asked, cell, options, &one)?);
             cache.pictures.insert(key, stage.clone());
             stage
         }
     };
-    let one = cache.team(1)?;
     if cell.machine == THREADS {
         let team = cache.team(cell.processors)?;
         let way = Way::Traced(film(&*team, asked.size)?);
@@ -106,7 +112,7 @@ pub(super) fn open(
 }
 
 impl TraceStage {
-    fn new(asked: &Asked, cell: &Cell, options: &Options) -> Result<Self, MeasureError> {
+    fn new(asked: &Asked, cell: &Cell, options: &Options, one: &Threads) -> Result<Self, MeasureError> {
         let scene = staging::scene(cell)?;
         let (width, height) = asked.size;
         let cameras = if options.path.is_some() || cell.settings.contains_key("scene.path") {
@@ -117,10 +123,23 @@ impl TraceStage {
             })?;
             vec![view; options.frames as usize]
         };
+        let items = World::count(&scene);
+        if u32::try_from(items).is_err() {
+            let most = u64::from(u32::MAX);
+            let message = format!("scene `{}`: {items} triangles and spheres, more than {most}", scene.name);
+            return Err(MeasureError::Failed(message));
+        }
         let world = World::new(scene);
         let mut builder = Builder::new(asked.builder, &Settings::default()).map_err(failed)?;
-        let hierarchy = Hierarchy::new(world.items(), &mut builder, asked.triangle).map_err(failed)?;
+        let before = one.now();
+        let hierarchy = Hierarchy::of(&world, asked.levels, &mut builder, asked.triangle).map_err(failed)?;
+        let time = (one.now() - before) as f64 / one.ticks_per_nanosecond();
+        let told = [
+            Sample::of_path("hierarchy_time", time),
+            Sample::of_path("structure_bytes", hierarchy.bytes() as f64),
+        ];
         Ok(Self {
+            told,
             world,
             hierarchy,
             pictures: RefCell::new(vec![None; cameras.len()]),
@@ -301,6 +320,7 @@ impl<H: Borrow<M>, M: Machine> Walk for PictureSubject<H, M> {
         samples.push(a_frame("rays_reflection", rays.reflection));
         samples.push(a_frame("rays_refraction", rays.refraction));
         samples.push(Sample::of_path("ray_rate", rays.rays() as f64 * 1e3 / all.max(1e-9)));
+        samples.extend(self.stage.told.iter().cloned());
         samples.push(Sample::of_path("load_imbalance", imbalance / frames));
         samples.push(Sample::of_path("processors_used", used as f64 / frames));
         samples.extend(traversal.sample());

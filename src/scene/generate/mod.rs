@@ -87,6 +87,7 @@ pub const GENERATORS: &[Generator] = &[
     corner::CORNER,
     spheres::THOUSANDS,
     spheres::MILLION,
+    spheres::ALL,
     noise_sphere::NOISE_SPHERE,
     cylinders::SIDES_50,
     cylinders::SIDES_150,

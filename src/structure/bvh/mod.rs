@@ -1,17 +1,21 @@
-//! Bounding volume hierarchies for rays: binary ones as their builders make them, and wide ones that rays go through.
+//! Bounding volume hierarchies for rays: binary ones as their builders make them, and wide ones that rays go through;
+//! and hierarchies of hierarchies, over meshes that are placed many times or move as they are.
 
 mod binary;
 pub mod build;
+mod instances;
 mod leaks;
+mod place;
 pub mod refit;
 mod traverse;
-mod walk;
 mod wide;
 
 pub use binary::{BinaryBvh, BinaryNode, BvhStatistics};
+pub use instances::{Instances, Placement};
 pub use leaks::leaks;
+pub use place::{Place, placed_box};
 pub use traverse::{RayCounts, TriangleList};
-pub use wide::WideBvh;
+pub use wide::{BoxBvh, WideBvh};
 
 use crate::geometry::{Hit, Ray};
 

@@ -1,13 +1,13 @@
 //! What rays take, counted or not.
 
 /// Is told what a ray does. [`Uncounted`] makes nothing of it, at no cost.
-pub(super) trait Count {
+pub(in crate::structure::bvh) trait Count {
     fn node(&mut self);
     fn block(&mut self);
 }
 
 /// Nothing is counted.
-pub(super) struct Uncounted;
+pub(in crate::structure::bvh) struct Uncounted;
 
 impl Count for Uncounted {
     #[inline(always)]
@@ -31,5 +31,12 @@ impl Count for RayCounts {
     }
     fn block(&mut self) {
         self.blocks += 1;
+    }
+}
+
+impl std::ops::AddAssign for RayCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.nodes += other.nodes;
+        self.blocks += other.blocks;
     }
 }

@@ -3,6 +3,7 @@
 //! The widest vector unit there is does it; all answer the same bit for bit, as the box tests and the triangle tests
 //! of all do the same operations in the same order.
 
+mod boxes;
 mod count;
 mod list;
 mod nearest;
@@ -11,10 +12,11 @@ mod single;
 mod waiting;
 
 pub use count::RayCounts;
-use count::{Count, Uncounted};
+pub(super) use count::{Count, Uncounted};
 pub use list::TriangleList;
 use nearest::Nearest;
-use packet::{RAYS, together as walk_together};
+pub(super) use packet::RAYS;
+use packet::together as walk_together;
 use single::through as walk_single;
 
 use super::{Intersector, WideBvh};

@@ -6,23 +6,31 @@
 //! come after their parents, so costs are found from the last node to the first. A cost is the surface of a box times
 //! what a visit there takes.
 
-use super::layout::{Block, Child, Node, TRIANGLES, WIDTH};
+use super::layout::{Child, Node, WIDTH};
 use crate::geometry::Aabb;
 use crate::geometry::hit::Scale;
 use crate::structure::bvh::{BinaryBvh, BinaryNode};
-use glam::Vec3;
 
-/// What a visit to a node takes, in visits to a block of triangles. Between 0.6 and 1 nothing changes that rays notice.
+/// What a visit to a node takes, in visits to a leaf's items. Between 0.6 and 1 nothing changes that rays notice.
 const NODE: f32 = 1.0;
-/// Most triangles of a leaf.
-const LEAF: usize = TRIANGLES;
 
 /// What comes of a collapse.
 pub(super) struct Collapsed {
     pub(super) root: Child,
     pub(super) nodes: Vec<Node>,
-    pub(super) blocks: Vec<Block>,
     pub(super) waiting: usize,
+}
+
+/// What leaves are made of.
+pub(super) trait Leaves {
+    /// Most items of a leaf; they are visited together.
+    const MOST: usize;
+    /// Whether a ray can ever meet an item.
+    fn can_be_met(&self, item: u32) -> bool;
+    /// A box around an item that can be met, in the scale's lengths.
+    fn bounds(&self, item: u32) -> Aabb;
+    /// Lays down a leaf of some items, from one to the most there may be.
+    fn lay(&mut self, items: &[u32]) -> Child;
 }
 
 /// A binary node as the collapse sees it.
@@ -39,21 +47,18 @@ struct Plan {
     is_leaf: bool,
 }
 
-struct Making<'a> {
+struct Making<'a, L> {
     plans: Vec<Plan>,
     order: Vec<u32>,
-    triangles: &'a [[Vec3; 3]],
-    scale: Scale,
+    leaves: &'a mut L,
     nodes: Vec<Node>,
-    blocks: Vec<Block>,
 }
 
-pub(super) fn collapse(binary: &BinaryBvh, triangles: &[[Vec3; 3]], scale: Scale) -> Collapsed {
-    let (nodes, order) = small_leaves(binary, triangles, scale);
-    let mut making =
-        Making { plans: plan(nodes), order, triangles, scale, nodes: Vec::new(), blocks: Vec::new() };
+pub(super) fn collapse<L: Leaves>(binary: &BinaryBvh, leaves: &mut L, scale: Scale) -> Collapsed {
+    let (nodes, order) = small_leaves(binary, leaves, scale);
+    let mut making = Making { plans: plan::<L>(nodes), order, leaves, nodes: Vec::new() };
     let (root, waiting) = making.make();
-    Collapsed { root, nodes: making.nodes, blocks: making.blocks, waiting }
+    Collapsed { root, nodes: making.nodes, waiting }
 }
 
 /// The surface of a box, in the scale's square lengths; 0 of an empty one.
@@ -64,7 +69,7 @@ fn surface(bounds: &Aabb) -> f32 {
 
 /// The nodes in the scale's lengths; leaves with more items than a leaf may have are halved until they have not, and
 /// what can never be hit is left out.
-fn small_leaves(binary: &BinaryBvh, triangles: &[[Vec3; 3]], scale: Scale) -> (Vec<BinaryNode>, Vec<u32>) {
+fn small_leaves<L: Leaves>(binary: &BinaryBvh, leaves: &L, scale: Scale) -> (Vec<BinaryNode>, Vec<u32>) {
     let mut order = Vec::with_capacity(binary.order.len());
     let mut nodes: Vec<BinaryNode> = Vec::with_capacity(binary.nodes.len());
     for node in &binary.nodes {
@@ -73,8 +78,8 @@ fn small_leaves(binary: &BinaryBvh, triangles: &[[Vec3; 3]], scale: Scale) -> (V
         if node.is_leaf() {
             let (first, items) = (node.first as usize, node.count as usize);
             kept.first = order.len() as u32;
-            let finite = |item: &u32| triangles[*item as usize].iter().all(|corner| corner.is_finite());
-            order.extend(binary.order[first..first + items].iter().copied().filter(finite));
+            let items = binary.order[first..first + items].iter().copied();
+            order.extend(items.filter(|item| leaves.can_be_met(*item)));
             kept.count = order.len() as u32 - kept.first;
         }
         nodes.push(kept);
@@ -83,14 +88,13 @@ fn small_leaves(binary: &BinaryBvh, triangles: &[[Vec3; 3]], scale: Scale) -> (V
     let mut next = 0;
     while let Some(node) = nodes.get(next).copied() {
         let was_leaf = next >= binary.nodes.len() || binary.nodes[next].is_leaf();
-        if was_leaf && node.count as usize > LEAF {
+        if was_leaf && node.count as usize > L::MOST {
             let half = node.count / 2;
             let children = [(node.first, half), (node.first + half, node.count - half)];
             nodes[next] = BinaryNode { first: nodes.len() as u32, count: 0, ..node };
             nodes.extend(children.map(|(first, count)| {
                 let items = &order[first as usize..(first + count) as usize];
-                let corners = items.iter().flat_map(|item| triangles[*item as usize]);
-                let around = Aabb::of_points(corners.map(|corner| scale.point(corner)));
+                let around = items.iter().map(|item| leaves.bounds(*item)).fold(Aabb::EMPTY, Aabb::union);
                 // With spatial splits a leaf's box may be smaller than its items'.
                 let bounds =
                     Aabb { min: around.min.max(node.bounds.min), max: around.max.min(node.bounds.max) };
@@ -108,7 +112,7 @@ fn small_leaves(binary: &BinaryBvh, triangles: &[[Vec3; 3]], scale: Scale) -> (V
 /// In place of a first child or item: a leaf without items.
 const NOTHING: u32 = u32::MAX;
 
-fn plan(nodes: Vec<BinaryNode>) -> Vec<Plan> {
+fn plan<L: Leaves>(nodes: Vec<BinaryNode>) -> Vec<Plan> {
     let mut plans: Vec<Plan> = nodes
         .into_iter()
         .map(|node| Plan {
@@ -123,7 +127,7 @@ fn plan(nodes: Vec<BinaryNode>) -> Vec<Plan> {
         let node = plans[at].node;
         let surface = surface(&node.bounds);
         if node.is_leaf() || node.first == NOTHING {
-            plans[at].cost = [surface * plans[at].items.div_ceil(TRIANGLES) as f32; WIDTH - 1];
+            plans[at].cost = [surface * plans[at].items.div_ceil(L::MOST) as f32; WIDTH - 1];
             continue;
         }
         let first = node.first as usize;
@@ -138,7 +142,7 @@ fn plan(nodes: Vec<BinaryNode>) -> Vec<Plan> {
         let (below, gets) = deal(WIDTH);
         made.first_gets[WIDTH - 1] = gets as u8;
         let as_node = below + surface * NODE;
-        let as_leaf = if items <= LEAF { surface * items.div_ceil(TRIANGLES) as f32 } else { f32::INFINITY };
+        let as_leaf = if items <= L::MOST { surface * items.div_ceil(L::MOST) as f32 } else { f32::INFINITY };
         made.is_leaf = as_leaf <= as_node;
         made.cost[0] = as_leaf.min(as_node);
         for places in 2..WIDTH {
@@ -152,7 +156,7 @@ fn plan(nodes: Vec<BinaryNode>) -> Vec<Plan> {
     plans
 }
 
-impl Making<'_> {
+impl<L: Leaves> Making<'_, L> {
     /// Makes all nodes and blocks. Tells the root, and how many children may wait on a way down.
     fn make(&mut self) -> (Child, usize) {
         if self.plans.first().is_none_or(|root| root.items == 0) {
@@ -224,14 +228,6 @@ impl Making<'_> {
                 open.extend([node.first as usize + 1, node.first as usize]);
             }
         }
-        let first = self.blocks.len();
-        for some in items.chunks(TRIANGLES) {
-            let mut block = Block::EMPTY;
-            for (i, &item) in some.iter().enumerate() {
-                block.set(i, self.triangles[item as usize].map(|corner| self.scale.point(corner)), item);
-            }
-            self.blocks.push(block);
-        }
-        Child::leaf(first, self.blocks.len() - first)
+        self.leaves.lay(&items)
     }
 }

@@ -80,6 +80,14 @@ impl Node {
         unsafe { L::load(self.planes.get_unchecked(row), from) }
     }
 
+    /// The boxes of its children.
+    pub(super) fn boxes(&self) -> impl Iterator<Item = Aabb> {
+        let corner =
+            |from: usize, i: usize| Vec3::from_array([0, 2, 4].map(|row| self.planes[row + from][i]));
+        let boxes = (0..WIDTH).map(move |i| Aabb { min: corner(0, i), max: corner(1, i) });
+        boxes.filter(|bounds| !bounds.is_empty())
+    }
+
     pub(super) fn set(&mut self, i: usize, bounds: &Aabb, child: Child) {
         for axis in 0..3 {
             self.planes[2 * axis][i] = bounds.min[axis];

@@ -1,0 +1,356 @@
+//! One ray through boxes, whatever is in them, or several rays together.
+
+use super::super::BoxBvh;
+use super::super::wide::WIDTH;
+use super::RAYS;
+use super::count::{Count, Uncounted};
+use super::waiting::{PLACES, Stack};
+use crate::geometry::FineRay;
+use crate::geometry::hit::{Aim, Probe, Sight, Span};
+use crate::geometry::lanes::{Kind, Lanes};
+use std::mem::MaybeUninit;
+
+impl BoxBvh {
+    /// Goes through the items in whose boxes a ray may end, nearer ones first. `item` is told an item's place in the
+    /// order and how far the ray still reaches, in its `t`, and answers how far it reaches from then on; below the ray's
+    /// `near`, no further item is asked about.
+    ///
+    /// `error` is by how much the ray may be beside where it is said to be, along each axis: a share of the sum of its
+    /// origin's and the boxes' greatest coordinates. No box is passed over that it meets so, nor one that begins as far
+    /// off as it reaches: of hits equally near all are seen. Where the ray goes through a box may be told wrong by
+    /// 2^-19 of how far off that is, so an item's own test may be.
+    #[inline]
+    pub fn walk(&self, ray: &FineRay, error: f64, item: impl FnMut(usize, f32) -> f32) {
+        self.walk_counted(ray, error, &mut Uncounted, item);
+    }
+
+    /// The same, counted.
+    #[inline]
+    pub(in crate::structure::bvh) fn walk_counted(
+        &self,
+        ray: &FineRay,
+        error: f64,
+        count: &mut impl Count,
+        mut item: impl FnMut(usize, f32) -> f32,
+    ) {
+        let Some(probe) = Probe::new(ray, self.scale, error) else { return };
+        let mut far = ray.far;
+        alone(self, &probe, probe.reach(far), count, |place| {
+            far = item(place, far);
+            (far >= ray.near).then(|| probe.reach(far))
+        });
+    }
+
+    /// Goes through the items in whose boxes some rays may end, aims in this hierarchy's scale that none is beside by
+    /// more than `error`, as above; none has a `near` below 0. `item` is told an item's place in the order and answers
+    /// how far the farthest still reaches, as [`Aim::reach`] has it. False, and nothing was done, if the rays do not go
+    /// together.
+    pub(in crate::structure::bvh) fn walk_together(
+        &self,
+        aims: &[Aim; RAYS],
+        error: f64,
+        mut item: impl FnMut(usize) -> f32,
+    ) -> bool {
+        let Some(span) = Span::of(aims) else { return false };
+        let span = span.widened(error);
+        together(self, &span, span.far, &mut Uncounted, |place| Some(item(place)));
+        true
+    }
+}
+
+/// Declares a function that walks, on the unit of the hierarchy, with the lanes of what is seen.
+macro_rules! on_unit_of {
+    (fn $name:ident($sight:ident: &$type:ty)) => {
+        #[inline]
+        fn $name<C: Count>(
+            bvh: &BoxBvh,
+            $sight: &$type,
+            reach: f32,
+            count: &mut C,
+            item: impl FnMut(usize) -> Option<f32>,
+        ) {
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2,bmi1,bmi2,popcnt,lzcnt")]
+            fn avx2<C: Count>(
+                bvh: &BoxBvh,
+                $sight: &$type,
+                reach: f32,
+                count: &mut C,
+                item: impl FnMut(usize) -> Option<f32>,
+            ) {
+                use crate::geometry::lanes::x86::Lanes8;
+                // SAFETY: this function has the feature.
+                unsafe {
+                    through::<Lanes8, _, C>(bvh, $sight.spread::<Lanes8>(), $sight.rows(), reach, count, item)
+                }
+            }
+            match bvh.unit.0 {
+                // SAFETY: a `Unit` is only made where it is there, this one where the bit instructions are too.
+                #[cfg(target_arch = "x86_64")]
+                Kind::Avx2 => unsafe { avx2(bvh, $sight, reach, count, item) },
+                // SAFETY: every x86-64 processor has the unit.
+                #[cfg(target_arch = "x86_64")]
+                Kind::Sse2 => unsafe {
+                    use crate::geometry::lanes::x86::Lanes4;
+                    through::<Lanes4, _, C>(bvh, $sight.spread::<Lanes4>(), $sight.rows(), reach, count, item)
+                },
+                // SAFETY: every 64-bit ARM processor with an operating system has the unit.
+                #[cfg(target_arch = "aarch64")]
+                Kind::Neon => unsafe {
+                    use crate::geometry::lanes::arm::Lanes4;
+                    through::<Lanes4, _, C>(bvh, $sight.spread::<Lanes4>(), $sight.rows(), reach, count, item)
+                },
+                // SAFETY: one lane needs no unit.
+                Kind::Scalar => unsafe {
+                    through::<f32, _, C>(bvh, $sight.spread::<f32>(), $sight.rows(), reach, count, item)
+                },
+            }
+        }
+    };
+}
+
+on_unit_of!(fn alone(probe: &Probe));
+on_unit_of!(fn together(span: &Span));
+
+/// # Safety
+/// The processor has the lanes' vector unit.
+#[inline(always)]
+unsafe fn through<L: Lanes, S: Sight<L>, C: Count>(
+    bvh: &BoxBvh,
+    sight: S,
+    rows: [usize; 3],
+    reach: f32,
+    count: &mut C,
+    item: impl FnMut(usize) -> Option<f32>,
+) {
+    let mut places = [const { MaybeUninit::uninit() }; PLACES];
+    if bvh.waiting <= PLACES {
+        // SAFETY: the processor is the caller's.
+        return unsafe { walk::<L, S, C>(bvh, sight, rows, reach, count, Stack::of(&mut places), item) };
+    }
+    let mut many = vec![MaybeUninit::uninit(); bvh.waiting];
+    // SAFETY: as above.
+    unsafe { walk::<L, S, C>(bvh, sight, rows, reach, count, Stack::of(&mut many), item) }
+}
+
+/// The walk itself: each item answers how far boxes may begin from then on, or that it is over. In addition: `rows` are
+/// those of what is seen, and `stack` has as many places as may wait.
+#[inline(always)]
+unsafe fn walk<L: Lanes, S: Sight<L>, C: Count>(
+    bvh: &BoxBvh,
+    sight: S,
+    rows: [usize; 3],
+    mut reach: f32,
+    count: &mut C,
+    mut stack: Stack<'_>,
+    mut item: impl FnMut(usize) -> Option<f32>,
+) {
+    if bvh.nodes.is_empty() {
+        return;
+    }
+    let mut at = bvh.root;
+    'next: loop {
+        while at.blocks() == 0 {
+            count.node();
+            // SAFETY: children are nodes that are there, and rows are below six.
+            let node = unsafe { bvh.nodes.get_unchecked(at.index()) };
+            let mut enters = [0.0f32; WIDTH];
+            let mut hit = 0u64;
+            for from in (0..WIDTH).step_by(L::LEN) {
+                // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 8.
+                unsafe {
+                    let first = [node.row(rows[0], from), node.row(rows[1], from), node.row(rows[2], from)];
+                    let last = [
+                        node.row(rows[0] ^ 1, from),
+                        node.row(rows[1] ^ 1, from),
+                        node.row(rows[2] ^ 1, from),
+                    ];
+                    let [first, last] = sight.slab(L::splat(reach), first, last);
+                    hit |= last.at_least(first) << from;
+                    first.store(&mut enters, from);
+                }
+            }
+            if hit == 0 {
+                break;
+            }
+            // SAFETY: there is one, and no more wait than the collapse counted.
+            at = unsafe { stack.nearest(hit, &enters, node) };
+        }
+        // A node none of whose boxes is met falls through with no items.
+        for of in 0..at.blocks() {
+            match item(at.index() + of) {
+                Some(further) => reach = further,
+                None => return,
+            }
+        }
+        loop {
+            let Some(waiting) = stack.pop() else { return };
+            if waiting.enters() <= reach {
+                at = waiting.child();
+                continue 'next;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::BinaryBvh;
+    use super::super::super::build::{Builder, Input, Settings};
+    use super::super::RayCounts;
+    use super::*;
+    use crate::geometry::{Aabb, Ray, Unit};
+    use crate::scene::SplitMix64;
+    use glam::{DVec3, Vec3};
+
+    fn over(boxes: &[Aabb]) -> (BoxBvh, Vec<u32>) {
+        let mut binary = BinaryBvh::default();
+        let mut builder = Builder::new("binned_sah", &Settings::default()).unwrap();
+        builder.build(&Input::of(boxes), &mut binary).unwrap();
+        BoxBvh::new(&binary, boxes)
+    }
+
+    /// Boxes of all sizes, some of them flat or points, as far from the origin and as large as told.
+    fn boxes(random: &mut SplitMix64, count: usize, scale: f32, shift: Vec3) -> Vec<Aabb> {
+        let mut draw = || Vec3::from_array([(); 3].map(|()| random.between(0.0, 1.0) as f32));
+        let one = |number: usize| {
+            let (at, mut size) = (draw() * 10.0, draw());
+            if number.is_multiple_of(4) {
+                size[number / 4 % 3] = 0.0;
+            } else if number.is_multiple_of(7) {
+                size = Vec3::ZERO;
+            }
+            Aabb { min: (at + shift) * scale, max: (at + size + shift) * scale }
+        };
+        (0..count).map(one).collect()
+    }
+
+    /// Whether a ray meets a box, in f64; `None` where that cannot be told for certain.
+    fn meets(ray: &FineRay, bounds: &Aabb) -> Option<bool> {
+        let (mut enters, mut leaves) = (f64::from(ray.near), f64::from(ray.far));
+        for axis in 0..3 {
+            let (from, rate) = (ray.origin[axis], ray.direction[axis]);
+            let [a, b] = [bounds.min[axis], bounds.max[axis]].map(|at| f64::from(at) - from);
+            if rate == 0.0 {
+                if a > 0.0 || b < 0.0 {
+                    return Some(false);
+                }
+                continue;
+            }
+            let (a, b) = if rate < 0.0 { (b / rate, a / rate) } else { (a / rate, b / rate) };
+            (enters, leaves) = (enters.max(a), leaves.min(b));
+        }
+        let room = 1e-12 * enters.abs().max(leaves.abs());
+        if (leaves - enters).abs() <= room { None } else { Some(enters < leaves) }
+    }
+
+    fn asked(bvh: &BoxBvh, order: &[u32], ray: &FineRay, error: f64) -> Vec<u32> {
+        let mut asked = Vec::new();
+        bvh.walk(ray, error, |place, far| {
+            asked.push(order[place]);
+            far
+        });
+        asked
+    }
+
+    #[test]
+    fn no_box_on_the_way_is_passed_over_at_any_scale_and_place() {
+        let mut random = SplitMix64::new(3);
+        for (scale, shift) in
+            [(1.0, Vec3::ZERO), (1e-30, Vec3::ZERO), (1e30, Vec3::ONE), (1.0, Vec3::new(1e5, -3e4, 7.0))]
+        {
+            let boxes = boxes(&mut random, 300, scale, shift);
+            let (mut bvh, order) = over(&boxes);
+            let (mut met, mut told) = (0, 0);
+            for number in 0..1500 {
+                let mut draw = || DVec3::from_array([(); 3].map(|()| random.between(0.0, 1.0)));
+                let share = [DVec3::ONE, DVec3::new(0.0, 0.5, 1.0), draw()][number % 3];
+                // At a corner, at an edge, within.
+                let [min, max] = [boxes[number % 300].min, boxes[number % 300].max].map(|at| at.as_dvec3());
+                let aim = min + (max - min) * share;
+                let mut direction = (draw() - 0.5) * f64::from(scale) * 20.0;
+                if number % 5 == 0 {
+                    direction[number / 5 % 3] = 0.0;
+                }
+                let mut ray =
+                    FineRay { origin: aim - direction, direction: direction * 0.7, near: 0.0, far: 3.0 };
+                if number % 6 == 0 {
+                    ray = FineRay { near: -2.0, far: 0.5, ..ray };
+                }
+                for unit in Unit::all() {
+                    bvh.unit = unit;
+                    let all = asked(&bvh, &order, &ray, 0.0);
+                    for (item, bounds) in boxes.iter().enumerate() {
+                        if meets(&ray, bounds) == Some(true) {
+                            met += 1;
+                            assert!(all.contains(&(item as u32)), "{item} {unit:?} {ray:?} {bounds:?}");
+                        }
+                    }
+                    told += all.len();
+                }
+            }
+            assert!(met > 4000 && told < 3 * met, "{told} told of {met} that are met");
+        }
+    }
+
+    #[test]
+    fn a_ray_is_as_wide_as_its_error() {
+        let wall = Aabb { min: Vec3::new(-1.0, 0.0, 4.0), max: Vec3::new(1.0, 1.0, 5.0) };
+        let (bvh, order) = over(&[wall]);
+        let along = |y: f64| {
+            let ray = Ray::new(Vec3::new(0.5, 0.0, 0.0), Vec3::Z);
+            let origin = DVec3::new(0.5, y, 0.0);
+            !asked(&bvh, &order, &FineRay { origin, ..FineRay::from(&ray) }, 1e-3).is_empty()
+        };
+        // The greatest coordinates are 5 and 0.5.
+        assert!(along(1.0) && along(1.0 + 5e-3) && along(-5e-3));
+        assert!(!along(1.0 + 3e-2) && !along(-3e-2));
+    }
+
+    #[test]
+    fn nearer_ones_come_first_and_the_end_is_the_end() {
+        let slices: Vec<Aabb> = (0..3000)
+            .map(|at| Aabb {
+                min: Vec3::new(-1.0, -1.0, at as f32),
+                max: Vec3::new(1.0, 1.0, at as f32 + 0.5),
+            })
+            .collect();
+        let (bvh, order) = over(&slices);
+        let ray = FineRay::from(&Ray::new(Vec3::new(0.3, 0.2, -1.0), Vec3::Z));
+        let all = asked(&bvh, &order, &ray, 0.0);
+        assert!(all.len() == 3000 && all.is_sorted(), "{} of 3000 are told", all.len());
+        let mut seen = Vec::new();
+        let mut counts = RayCounts::default();
+        bvh.walk_counted(&ray, 0.0, &mut counts, |place, far| {
+            seen.push(order[place]);
+            // The ray ends within the eighth.
+            if order[place] == 7 { 8.2 } else { far }
+        });
+        assert!(seen.len() == 8 && (3..60).contains(&counts.nodes), "{seen:?} {counts:?}");
+        let mut count = 0;
+        bvh.walk(&ray, 0.0, |_, _| {
+            count += 1;
+            f32::NEG_INFINITY
+        });
+        assert_eq!(count, 1);
+    }
+
+    #[test]
+    fn nothing_is_asked_of_what_is_not() {
+        let ray = FineRay::from(&Ray::new(Vec3::ZERO, Vec3::X));
+        assert!(asked(&over(&[]).0, &[], &ray, 0.0).is_empty());
+        let (bvh, order) = over(&[Aabb { min: Vec3::splat(-1.0), max: Vec3::ONE }; 3]);
+        assert_eq!(asked(&bvh, &order, &ray, 0.0).len(), 3);
+        for bad in [
+            FineRay { direction: DVec3::ZERO, ..ray },
+            FineRay { direction: DVec3::NAN, ..ray },
+            FineRay { direction: DVec3::INFINITY, ..ray },
+            FineRay { origin: DVec3::new(0.0, f64::NAN, 0.0), ..ray },
+            FineRay { far: f32::NAN, ..ray },
+            FineRay { near: f32::NAN, ..ray },
+            FineRay { near: 2.0, far: 1.0, ..ray },
+        ] {
+            assert!(asked(&bvh, &order, &bad, 0.0).is_empty(), "{bad:?}");
+        }
+    }
+}

@@ -27,7 +27,7 @@ pub use watertight::Watertight;
 
 pub(crate) use aim::{Aim, Beam};
 pub(crate) use slab::slab;
-pub(crate) use span::Span;
+pub(crate) use span::{Span, Spread};
 
 use super::lanes::Lanes;
 

@@ -9,7 +9,7 @@ mod walk;
 mod wide;
 
 pub use binary::{BinaryBvh, BinaryNode, BvhStatistics};
-pub use leaks::leaks;
+pub use leaks::{leaks, leaks_together};
 pub use traverse::{RayCounts, TriangleList};
 pub use wide::WideBvh;
 

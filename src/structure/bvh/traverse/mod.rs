@@ -9,6 +9,7 @@ mod nearest;
 mod packet;
 mod single;
 mod waiting;
+mod walk;
 
 pub use count::RayCounts;
 use count::{Count, Uncounted};
@@ -61,7 +62,7 @@ macro_rules! on_unit_through {
     };
 }
 
-on_unit_through!(fn through(aim: &Aim) -> Nearest = walk_single, ANY);
+on_unit_through!(fn through(ray: &Ray) -> Option<Hit> = walk_single, ANY);
 on_unit_through!(fn together(aims: &[Aim; RAYS], span: &Span) -> Option<[Nearest; RAYS]> = walk_together);
 
 impl<T: TriangleTest> WideBvh<T> {
@@ -127,13 +128,12 @@ impl<T: TriangleTest> WideBvh<T> {
 
     #[inline]
     fn closest_to(&self, unit: Unit, ray: &Ray, count: &mut impl Count) -> Option<Hit> {
-        let aim = Aim::new(ray, self.scale)?;
-        through::<T, _, false>(unit, self, count, &aim).hit(&aim)
+        through::<T, _, false>(unit, self, count, ray)
     }
 
     #[inline]
     fn occluded_to(&self, unit: Unit, ray: &Ray, count: &mut impl Count) -> bool {
-        Aim::new(ray, self.scale).is_some_and(|aim| through::<T, _, true>(unit, self, count, &aim).is_hit())
+        through::<T, _, true>(unit, self, count, ray).is_some()
     }
 }
 

@@ -16,7 +16,8 @@ pub(crate) struct Span {
     /// Least and greatest.
     first_rate: [Vec3A; 2],
     last_rate: [Vec3A; 2],
-    near: f32,
+    /// The nearest start of a ray.
+    pub(crate) near: f32,
     /// The farthest end of a ray.
     pub(crate) far: f32,
     /// By axis, whether they go up.

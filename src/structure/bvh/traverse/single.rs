@@ -74,21 +74,32 @@ impl<N: Lanes, B: Lanes, T: TriangleTest, const ANY: bool> Walker<N> for One<N, 
 
     #[inline(always)]
     unsafe fn block(&mut self, block: &Block) -> ControlFlow<()> {
-        for from in (0..TRIANGLES).step_by(B::LEN) {
-            // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 4.
-            unsafe {
-                let Some(found) = meet::<B, T>(&self.block_beam, &Together { block, from }) else { continue };
-                let in_reach =
-                    found.t.at_least(B::splat(self.near)) & B::splat(self.nearest.t).at_least(found.t);
-                let lanes = found.lanes & in_reach;
-                if lanes != 0 {
-                    self.nearest.take(&found, lanes, &block.items[from..]);
-                    if ANY && self.nearest.is_hit() {
-                        return ControlFlow::Break(());
-                    }
-                }
+        // SAFETY: the processor is the caller's.
+        unsafe { test_block::<B, T>(&self.block_beam, self.near, block, &mut self.nearest) };
+        if ANY && self.nearest.is_hit() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// Tests the triangles of a block with a ray, which begins at `near`, in all lanes.
+///
+/// # Safety
+/// The processor has the lanes' vector unit.
+#[inline(always)]
+pub(super) unsafe fn test_block<B: Lanes, T: TriangleTest>(
+    beam: &Beam<B>,
+    near: f32,
+    block: &Block,
+    nearest: &mut Nearest,
+) {
+    for from in (0..TRIANGLES).step_by(B::LEN) {
+        // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 4.
+        unsafe {
+            let Some(found) = meet::<B, T>(beam, &Together { block, from }) else { continue };
+            let in_reach = found.t.at_least(B::splat(near)) & B::splat(nearest.t).at_least(found.t);
+            let lanes = found.lanes & in_reach;
+            if lanes != 0 {
+                nearest.take(&found, lanes, &block.items[from..]);
             }
         }
-        ControlFlow::Continue(())
     }
 }

@@ -51,9 +51,11 @@ impl Tiles {
     }
 }
 
-/// Pixels across and down whose rays are asked about together: as many as go in a packet, and as near one another as
+/// Pixels across and down whose rays come one after the other: as many as go in a packet, and as near one another as
 /// can be.
 const SQUARE: usize = 4;
+/// The most pixels whose rays are asked about together: those of the paper's tile.
+const TOGETHER: usize = 128;
 
 /// The picture of one camera, for a tile scheme to share out.
 pub struct Frame<'a, M: Machine> {
@@ -91,37 +93,49 @@ impl<'a, M: Machine> Frame<'a, M> {
         self.tiles
     }
 
-    /// Traces one tile, square by square.
+    /// Traces one tile.
     ///
     /// # Panics
     /// If another processor is at this tile.
     pub(super) fn trace(&self, tile: usize, counts: &mut Counts) {
         let claim = self.film.claim(tile);
         let (across, down) = self.tiles.pixels(tile);
-        for top in down.clone().step_by(SQUARE) {
-            for left in across.clone().step_by(SQUARE) {
-                let part = |from: u32, end: u32| from..end.min(from + SQUARE as u32);
-                self.trace_square(&claim, part(left, across.end), part(top, down.end), counts);
+        let squares = down.clone().step_by(SQUARE).flat_map(|top| {
+            let lefts = across.clone().step_by(SQUARE);
+            lefts.map(move |left| (left, top))
+        });
+        let mut pixels = [(0, 0); TOGETHER];
+        let mut count = 0;
+        for (left, top) in squares {
+            if count + SQUARE * SQUARE > TOGETHER {
+                self.trace_pixels(&claim, &pixels[..count], counts);
+                count = 0;
+            }
+            for y in top..down.end.min(top + SQUARE as u32) {
+                for x in left..across.end.min(left + SQUARE as u32) {
+                    pixels[count] = (x, y);
+                    count += 1;
+                }
             }
         }
+        self.trace_pixels(&claim, &pixels[..count], counts);
     }
 
-    /// Traces some pixels of a claimed tile, not more than a square.
-    fn trace_square(&self, _claim: &Claim<'_>, across: Range<u32>, down: Range<u32>, counts: &mut Counts) {
-        let pixels = || down.clone().flat_map(|y| across.clone().map(move |x| (x, y)));
-        let mut rays = [Ray::new(Vec3::ZERO, Vec3::ZERO); SQUARE * SQUARE];
-        let mut hits = [None; SQUARE * SQUARE];
-        let count = across.len() * down.len();
-        for (ray, (x, y)) in rays.iter_mut().zip(pixels()) {
-            *ray = self.eye.ray(x, y);
+    /// Traces some pixels of a claimed tile, not more than are asked about together.
+    fn trace_pixels(&self, _claim: &Claim<'_>, pixels: &[(u32, u32)], counts: &mut Counts) {
+        let mut rays = [Ray::new(Vec3::ZERO, Vec3::ZERO); TOGETHER];
+        let mut hits = [None; TOGETHER];
+        let (rays, hits) = (&mut rays[..pixels.len()], &mut hits[..pixels.len()]);
+        for (ray, (x, y)) in rays.iter_mut().zip(pixels) {
+            *ray = self.eye.ray(*x, *y);
         }
-        self.tracer.intersector().closest_coherent(&rays[..count], &mut hits[..count]);
-        counts.eye += count as u64;
-        for (((x, y), ray), hit) in pixels().zip(&rays).zip(hits) {
-            let colour = self.tracer.seen(ray, hit, counts);
+        self.tracer.intersector().closest_coherent(rays, hits);
+        counts.eye += rays.len() as u64;
+        for (((x, y), ray), hit) in pixels.iter().zip(rays).zip(hits) {
+            let colour = self.tracer.seen(ray, *hit, counts);
             // SAFETY: the claim keeps everybody else from this tile, and the pixels of others are not written. What the
             // last to have the tile wrote happened before the claim.
-            unsafe { self.film.slot(x, y).write(colour.to_array()) };
+            unsafe { self.film.slot(*x, *y).write(colour.to_array()) };
         }
     }
 }

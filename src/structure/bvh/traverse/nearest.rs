@@ -60,14 +60,13 @@ impl Nearest {
     }
 
     /// Takes for each of some rays what its lane found of one triangle, unless that lies before the ray's start. Tells
-    /// whether any is nearer than what was. `reach` keeps how far each still goes.
+    /// whether any is nearer than what was.
     ///
     /// # Safety
     /// The processor has the lanes' vector unit, and there are as many rays as lanes.
     #[inline(always)]
     pub(super) unsafe fn take_each<L: Lanes>(
         rays: &mut [Self],
-        reach: &mut [f32],
         aims: &[Aim],
         found: &Found<L>,
         lanes: u64,
@@ -88,7 +87,6 @@ impl Nearest {
             if t[lane] >= aims[lane].near {
                 is_nearer |= t[lane] < rays[lane].t;
                 rays[lane].offer(t[lane], u[lane], v[lane], item);
-                reach[lane] = rays[lane].t;
             }
         }
         is_nearer

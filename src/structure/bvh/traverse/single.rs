@@ -26,25 +26,42 @@ pub(super) unsafe fn through<N: Lanes, B: Lanes, T: TriangleTest, C: Count, cons
     // Here, where the unit's own instructions make it and its numbers need not go through memory.
     let aim = &Aim::new(ray, bvh.scale)?;
     // SAFETY: the processor is the caller's.
+    unsafe { go_on::<N, B, T, C, ANY>(bvh, count, aim, Nearest::none(aim)) }.hit(aim)
+}
+
+/// Takes a ray through that may have a hit already: what is nearest then.
+///
+/// # Safety
+/// The processor has the vector units of the lanes for nodes `N` and for blocks `B`.
+#[inline(always)]
+pub(super) unsafe fn go_on<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
+    bvh: &WideBvh<T>,
+    count: &mut C,
+    aim: &Aim,
+    nearest: Nearest,
+) -> Nearest {
+    // SAFETY: the processor is the caller's.
     let mut one = unsafe {
         One::<N, B, T, ANY> {
             beam: Beam::one(aim),
             block_beam: Beam::one(aim),
             near: aim.near,
-            nearest: Nearest::none(aim),
+            nearest,
             test: PhantomData,
         }
     };
     let mut places = [const { MaybeUninit::uninit() }; PLACES];
-    if bvh.waiting <= PLACES {
-        // SAFETY: the processor is the caller's.
-        unsafe { walk::<N, T>(bvh, count, &mut one, Stack::of(&mut places)) };
+    let mut many = Vec::new();
+    let places = if bvh.waiting <= PLACES {
+        &mut places[..]
     } else {
-        let mut many = vec![MaybeUninit::uninit(); bvh.waiting];
-        // SAFETY: as above.
-        unsafe { walk::<N, T>(bvh, count, &mut one, Stack::of(&mut many)) };
-    }
-    one.nearest.hit(aim)
+        many.resize_with(bvh.waiting, MaybeUninit::uninit);
+        &mut many[..]
+    };
+    // Whether it broke off, at the first of any hits, is to be seen by there being one.
+    // SAFETY: the processor is the caller's, and the places are enough.
+    let _ = unsafe { walk::<N, T>(bvh, count, &mut one, Stack::of(places)) };
+    one.nearest
 }
 
 struct One<N, B, T, const ANY: bool> {
@@ -67,39 +84,28 @@ impl<N: Lanes, B: Lanes, T: TriangleTest, const ANY: bool> Walker<N> for One<N, 
     }
 
     #[inline(always)]
-    unsafe fn slab(&self, first: [N; 3], last: [N; 3]) -> [N; 2] {
+    unsafe fn slab(&mut self, first: [N; 3], last: [N; 3]) -> [N; 2] {
         // SAFETY: the processor is the caller's.
         unsafe { slab(&self.beam, [N::splat(self.near), N::splat(self.nearest.t)], first, last) }
     }
 
     #[inline(always)]
     unsafe fn block(&mut self, block: &Block) -> ControlFlow<()> {
-        // SAFETY: the processor is the caller's.
-        unsafe { test_block::<B, T>(&self.block_beam, self.near, block, &mut self.nearest) };
-        if ANY && self.nearest.is_hit() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    }
-}
-
-/// Tests the triangles of a block with a ray, which begins at `near`, in all lanes.
-///
-/// # Safety
-/// The processor has the lanes' vector unit.
-#[inline(always)]
-pub(super) unsafe fn test_block<B: Lanes, T: TriangleTest>(
-    beam: &Beam<B>,
-    near: f32,
-    block: &Block,
-    nearest: &mut Nearest,
-) {
-    for from in (0..TRIANGLES).step_by(B::LEN) {
-        // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 4.
-        unsafe {
-            let Some(found) = meet::<B, T>(beam, &Together { block, from }) else { continue };
-            let in_reach = found.t.at_least(B::splat(near)) & B::splat(nearest.t).at_least(found.t);
-            let lanes = found.lanes & in_reach;
-            if lanes != 0 {
-                nearest.take(&found, lanes, &block.items[from..]);
+        for from in (0..TRIANGLES).step_by(B::LEN) {
+            // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 4.
+            unsafe {
+                let Some(found) = meet::<B, T>(&self.block_beam, &Together { block, from }) else { continue };
+                let in_reach =
+                    found.t.at_least(B::splat(self.near)) & B::splat(self.nearest.t).at_least(found.t);
+                let lanes = found.lanes & in_reach;
+                if lanes != 0 {
+                    self.nearest.take(&found, lanes, &block.items[from..]);
+                    if ANY && self.nearest.is_hit() {
+                        return ControlFlow::Break(());
+                    }
+                }
             }
         }
+        ControlFlow::Continue(())
     }
 }

@@ -23,13 +23,13 @@ pub(super) trait Walker<N: Lanes> {
 
     /// From where to where it may be between planes: by axis, those come to first and last. The first exceeds the
     /// second if nowhere.
-    unsafe fn slab(&self, first: [N; 3], last: [N; 3]) -> [N; 2];
+    unsafe fn slab(&mut self, first: [N; 3], last: [N; 3]) -> [N; 2];
 
     /// Tests the triangles of a block. A break ends the way.
     unsafe fn block(&mut self, block: &Block) -> ControlFlow<()>;
 }
 
-/// Takes a walker through, nearer boxes first.
+/// Takes a walker through, nearer boxes first. Tells whether it came to the end or broke off.
 ///
 /// # Safety
 /// The processor has the lanes' vector unit, and `stack` as many places as may wait.
@@ -39,9 +39,9 @@ pub(super) unsafe fn walk<N: Lanes, T: TriangleTest>(
     count: &mut impl Count,
     walker: &mut impl Walker<N>,
     mut stack: Stack<'_>,
-) {
+) -> ControlFlow<()> {
     if bvh.nodes.is_empty() {
-        return;
+        return ControlFlow::Continue(());
     }
     let rows = walker.rows();
     let mut at = bvh.root;
@@ -63,13 +63,10 @@ pub(super) unsafe fn walk<N: Lanes, T: TriangleTest>(
         for of in 0..at.blocks() {
             count.block();
             // SAFETY: children are blocks that are there; the processor is the caller's.
-            let ended = unsafe { walker.block(bvh.blocks.get_unchecked(at.index() + of)) };
-            if ended.is_break() {
-                return;
-            }
+            unsafe { walker.block(bvh.blocks.get_unchecked(at.index() + of)) }?;
         }
         at = loop {
-            let Some(waiting) = stack.pop() else { return };
+            let Some(waiting) = stack.pop() else { return ControlFlow::Continue(()) };
             if waiting.enters() <= walker.far() {
                 break waiting.child();
             }
@@ -85,7 +82,7 @@ pub(super) unsafe fn walk<N: Lanes, T: TriangleTest>(
 unsafe fn met<N: Lanes>(
     node: &Node,
     rows: [usize; 3],
-    walker: &impl Walker<N>,
+    walker: &mut impl Walker<N>,
     enters: &mut [f32; WIDTH],
 ) -> u64 {
     let mut met = 0;

@@ -65,7 +65,7 @@ pub(crate) fn render(words: &RenderWords) -> Result<()> {
     let before = team.now();
     let shares = {
         let tracer = Tracer::new(&world, &hierarchy, look);
-        let frame = Frame::new(tracer, Eye::new(&camera, width, height), words.tile, &film);
+        let frame = Frame::new(tracer, Eye::new(&camera, width, height), words.tile, &mut film);
         let bar = Bar::of_tiles(&world.scene().name, frame.tiles().count());
         let shares = scheme.run(&team, &Shown { frame: &frame, bar: &bar }).map_err(ShareError::from);
         bar.end();

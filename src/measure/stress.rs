@@ -9,6 +9,7 @@ mod barriers;
 mod contacts;
 mod cull_kernels;
 mod cull_tests;
+mod leaks;
 mod overlaps;
 mod primitives;
 mod tiles;
@@ -29,6 +30,7 @@ const PRIMITIVES: &[(&str, primitives::Check)] = &[
     ("cull_kernels", cull_kernels::check),
     ("contacts", contacts::check),
     ("overlaps", overlaps::check),
+    ("leaks", leaks::check),
 ];
 
 /// What was run, and what went wrong.
@@ -36,7 +38,7 @@ const PRIMITIVES: &[(&str, primitives::Check)] = &[
 pub struct StressReport {
     /// Runs made.
     pub runs: u64,
-    /// Nodes visited, tasks passed on, turns taken, boxes tested, verdicts given, or pairs tried in these
+    /// Nodes visited, tasks passed on, turns taken, boxes tested, verdicts given, pairs tried, or rays aimed in these
     /// runs.
     pub nodes: u64,
     /// Invariants found broken. Stressing ends at the first of them.

@@ -4,7 +4,7 @@ use super::probe::BEYOND;
 use super::scale::{Scale, inverse, to_one};
 use crate::geometry::Ray;
 use crate::geometry::lanes::Lanes;
-use glam::Vec3;
+use glam::Vec3A;
 
 /// By how much distances of planes are rounded outwards, relative to themselves: 16 roundings.
 pub(super) const SLACK: f32 = 1.0 / (1 << 20) as f32;
@@ -12,25 +12,30 @@ pub(super) const SLACK: f32 = 1.0 / (1 << 20) as f32;
 /// to less than the rounding of its origin.
 pub(super) const LEAST_PART: f32 = 1.0 / (1u128 << 100) as f32;
 
+/// For the axis where a ray goes most: those that the watertight test calls x, y and z.
+const AXES: [[u8; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+
 /// A ray in a scale's lengths, its direction's greatest part between 1 and 2, and what tests ask of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
-    pub(super) origin: Vec3,
-    pub(super) direction: Vec3,
+    pub(super) origin: Vec3A,
+    pub(super) direction: Vec3A,
     /// One over the direction, lessened and enlarged by the slack.
-    pub(super) first_rate: Vec3,
-    pub(super) last_rate: Vec3,
+    pub(super) first_rate: Vec3A,
+    pub(super) last_rate: Vec3A,
     pub(crate) near: f32,
     pub(crate) far: f32,
     /// What the watertight test takes from x and y for each z, and one over the direction's part along z, by its axes.
     shear: [f32; 3],
+    /// The origin by that test's axes.
+    from: [f32; 3],
+    /// Lengths of the ray's own direction in each of this one's, and where its `t` begins.
+    stretch: f32,
+    start: f32,
     /// The axes that test calls x, y and z: z is where the ray goes most.
     pub(super) axes: [u8; 3],
     /// Bit `axis` is set if the ray goes down that axis.
     pub(super) octant: u8,
-    /// Lengths of the ray's own direction in each of this one's, and where its `t` begins.
-    stretch: f32,
-    start: f32,
 }
 
 impl Aim {
@@ -44,16 +49,18 @@ impl Aim {
         let from = if start < 0.0 { ray.at(start) } else { ray.origin };
         // Adding zero takes the sign from a zero.
         let (near, far) = (ray.near - start + 0.0, ray.far - start);
-        let longest = ray.direction.abs().max_element();
+        let own = Vec3A::from(ray.direction);
+        let longest = own.abs().max_element();
         let lengthen = to_one(longest);
-        let origin = scale.point(from);
-        let direction = ray.direction * lengthen;
-        let small = direction.abs().cmplt(Vec3::splat(LEAST_PART));
-        let direction = Vec3::select(small, Vec3::ZERO.copysign(direction), direction);
+        let origin = Vec3A::from(from) * scale.factor();
+        let direction = own * lengthen;
+        let sizes = direction.abs();
+        let small = sizes.cmplt(Vec3A::splat(LEAST_PART));
+        let direction = Vec3A::select(small, Vec3A::ZERO.copysign(direction), direction);
         // All are powers of two: beyond the numbers' range if the ray's lengths do not lead through the scene.
         let (lengths, stretch) = (scale.factor() * inverse(lengthen), scale.inverse() * lengthen);
         let usable = origin.is_finite()
-            && ray.direction.is_finite()
+            && own.is_finite()
             && longest > 0.0
             && near <= far
             && lengths.is_normal()
@@ -62,10 +69,12 @@ impl Aim {
             return None;
         }
         let rate = direction.recip();
-        let sizes = direction.abs();
-        let z = usize::from(sizes.y > sizes.x);
-        let z = if sizes.z > sizes[z] { 2 } else { z };
-        let [x, y] = [[1, 2], [2, 0], [0, 1]][z];
+        let sizes = sizes.to_array();
+        let z = usize::from(sizes[1] > sizes[0]);
+        let z = if sizes[2] > sizes[z] { 2 } else { z };
+        let axes = AXES[z];
+        let [x, y] = [usize::from(axes[0]), usize::from(axes[1])];
+        let (starts, parts, rates) = (origin.to_array(), direction.to_array(), rate.to_array());
         Some(Self {
             origin,
             direction,
@@ -73,11 +82,12 @@ impl Aim {
             last_rate: rate * (1.0 + SLACK),
             near: near * lengths,
             far: (far * lengths).min(f32::MAX),
-            shear: [direction[x] * rate[z], direction[y] * rate[z], rate[z]],
-            axes: [x, y, z].map(|axis| axis as u8),
-            octant: direction.is_negative_bitmask() as u8,
+            shear: [parts[x] * rates[z], parts[y] * rates[z], rates[z]],
+            from: [starts[x], starts[y], starts[z]],
             stretch,
             start,
+            axes,
+            octant: direction.is_negative_bitmask() as u8,
         })
     }
 
@@ -103,6 +113,8 @@ pub(crate) struct Beam<L> {
     pub(super) first_rate: [L; 3],
     pub(super) last_rate: [L; 3],
     pub(super) shear: [L; 3],
+    /// The origins by the axes of the watertight test.
+    pub(super) from: [L; 3],
     pub(super) axes: [usize; 3],
     /// By axis: whether it goes up, so that the plane it comes to last is the greatest.
     pub(super) rises: [bool; 3],
@@ -132,6 +144,7 @@ impl<L: Lanes> Beam<L> {
                 first_rate: spread(aim.first_rate.to_array()),
                 last_rate: spread(aim.last_rate.to_array()),
                 shear: spread(aim.shear),
+                from: spread(aim.from),
                 axes: axes(aim),
                 rises: rises(aim),
             }
@@ -145,14 +158,14 @@ impl<L: Lanes> Beam<L> {
     #[inline(always)]
     pub(crate) unsafe fn several(aims: &[Aim; 16], from: usize) -> Self {
         // By number of the field, then by ray.
-        let mut columns = [[0.0f32; 16]; 15];
+        let mut columns = [[0.0f32; 16]; 18];
         for (lane, aim) in aims[from..from + L::LEN].iter().enumerate() {
-            let Aim { origin, direction, first_rate, last_rate, shear, .. } = aim;
-            let parts = [*origin, *direction, *first_rate, *last_rate, Vec3::from_array(*shear)];
-            for (part, three) in parts.iter().zip(columns.as_chunks_mut::<3>().0) {
-                for (column, value) in three.iter_mut().zip(part.to_array()) {
-                    column[lane] = value;
-                }
+            let Aim { origin, direction, first_rate, last_rate, shear, from, .. } = aim;
+            let [origin, direction] = [origin, direction].map(|part| part.to_array());
+            let [first_rate, last_rate] = [first_rate, last_rate].map(|part| part.to_array());
+            let parts = [origin, direction, first_rate, last_rate, *shear, *from];
+            for (column, value) in columns.iter_mut().zip(parts.as_flattened()) {
+                column[lane] = *value;
             }
         }
         let three = columns.as_chunks::<3>().0;
@@ -164,6 +177,7 @@ impl<L: Lanes> Beam<L> {
                 first_rate: load(&three[2]),
                 last_rate: load(&three[3]),
                 shear: load(&three[4]),
+                from: load(&three[5]),
                 axes: axes(&aims[0]),
                 rises: rises(&aims[0]),
             }

@@ -4,7 +4,7 @@ use super::Sight;
 use super::aim::{Aim, rises, rows, spread};
 use super::probe::SLACK;
 use crate::geometry::lanes::Lanes;
-use glam::Vec3;
+use glam::Vec3A;
 
 /// How far apart directions may be that go much the same way, as shares of their greatest part.
 const APART: f32 = 0.125;
@@ -13,12 +13,13 @@ const APART: f32 = 0.125;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Span {
     /// The origins that make planes seem nearest where they are come to first, and farthest where last.
-    first_origin: Vec3,
-    last_origin: Vec3,
+    first_origin: Vec3A,
+    last_origin: Vec3A,
     /// Least and greatest.
-    first_rate: [Vec3; 2],
-    last_rate: [Vec3; 2],
-    near: f32,
+    first_rate: [Vec3A; 2],
+    last_rate: [Vec3A; 2],
+    /// The nearest start of a ray.
+    pub(crate) near: f32,
     /// The farthest end of a ray.
     pub(crate) far: f32,
     /// By axis, whether they go up.
@@ -39,15 +40,15 @@ impl Span {
         if !aims.iter().all(like_first) {
             return None;
         }
-        let over = |part: fn(&Aim) -> Vec3| {
+        let over = |part: fn(&Aim) -> Vec3A| {
             aims.iter().fold([part(first); 2], |[least, greatest], aim| {
                 [least.min(part(aim)), greatest.max(part(aim))]
             })
         };
         let [least, greatest] = over(|aim| aim.origin);
         let rises = rises(first);
-        let pick = |up: Vec3, down: Vec3| {
-            Vec3::from_array([0, 1, 2].map(|i| if rises[i] { up[i] } else { down[i] }))
+        let pick = |up: Vec3A, down: Vec3A| {
+            Vec3A::from_array([0, 1, 2].map(|i| if rises[i] { up[i] } else { down[i] }))
         };
         Some(Self {
             first_origin: pick(greatest, least),

@@ -25,11 +25,9 @@ impl Edges for Watertight {
     unsafe fn within_edges<L: Lanes>(beam: &Beam<L>, triangles: &impl Corners<L>) -> Option<Found<L>> {
         // SAFETY: the processor is the caller's.
         unsafe {
-            let axes = beam.axes;
-            let from = [beam.origin[axes[0] & 3], beam.origin[axes[1] & 3], beam.origin[axes[2] & 3]];
-            let a = sheared(beam, triangles, from, 0);
-            let b = sheared(beam, triangles, from, 1);
-            let c = sheared(beam, triangles, from, 2);
+            let a = sheared(beam, triangles, 0);
+            let b = sheared(beam, triangles, 1);
+            let c = sheared(beam, triangles, 2);
             let mut weights = [weight(c, b), weight(a, c), weight(b, a)];
             let [u, v, w] = weights;
             let zero = L::splat(0.0);
@@ -52,18 +50,13 @@ impl Edges for Watertight {
 
 /// A corner as seen from the ray's origin, sheared so that the ray goes along z.
 #[inline(always)]
-unsafe fn sheared<L: Lanes>(
-    beam: &Beam<L>,
-    triangles: &impl Corners<L>,
-    from: [L; 3],
-    corner: usize,
-) -> [L; 3] {
+unsafe fn sheared<L: Lanes>(beam: &Beam<L>, triangles: &impl Corners<L>, corner: usize) -> [L; 3] {
     // SAFETY: the processor is the caller's.
     unsafe {
         let [x, y, z] = beam.axes;
-        let z = triangles.at(corner, z).sub(from[2]);
-        let x = triangles.at(corner, x).sub(from[0]).sub(beam.shear[0].mul(z));
-        let y = triangles.at(corner, y).sub(from[1]).sub(beam.shear[1].mul(z));
+        let z = triangles.at(corner, z).sub(beam.from[2]);
+        let x = triangles.at(corner, x).sub(beam.from[0]).sub(beam.shear[0].mul(z));
+        let y = triangles.at(corner, y).sub(beam.from[1]).sub(beam.shear[1].mul(z));
         [x, y, z]
     }
 }

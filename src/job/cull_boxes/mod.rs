@@ -9,12 +9,13 @@ mod costs;
 mod random;
 
 use crate::geometry::{Aabb, BoxBlock, BoxTest, Frustum, culling};
-use crate::machine::{Layout, Machine, Processor, Shared, Slot};
+use crate::machine::{Layout, Machine, Processor, Shared, Word};
 use crate::scheme::tiles::TileWork;
 use crate::structure::{BitMask, BoxTree, BoxTreeView, Boxes, Looked};
 pub use costs::Costs;
 pub use random::{camera, random_boxes};
 use std::ops::Range;
+use std::sync::atomic::Ordering;
 
 /// Blocks in a piece of the flat array: their mask words fill 64 bytes.
 const FLAT_PIECE: usize = 8;
@@ -41,7 +42,8 @@ pub struct BoxField<M: Machine> {
     groups: Shared<Aabb>,
     /// For [`Way::Plain`].
     structures: Shared<Aabb>,
-    mask: Shared<M::Slot<u64>>,
+    /// Words, so that two processors at one piece, which no scheme allows, would waste their time and no more.
+    mask: Shared<M::Word>,
 }
 
 impl<M: Machine> BoxField<M> {
@@ -58,7 +60,7 @@ impl<M: Machine> BoxField<M> {
             bounds: copy(view.bounds),
             groups: machine.alloc(view.groups.len(), Layout::Packed, |i| view.groups[i]),
             structures: machine.alloc(boxes, Layout::Packed, |i| tree.boxes().get(i)),
-            mask: machine.alloc(view.blocks.len(), Layout::Packed, |_| Slot::new(0)),
+            mask: machine.alloc(view.blocks.len(), Layout::Packed, |_| Word::new(0)),
         }
     }
 
@@ -80,9 +82,9 @@ impl<M: Machine> BoxField<M> {
     /// The mask that the last run left. `&mut`, for no run may be going on.
     pub fn mask(&mut self) -> BitMask {
         let mut mask = BitMask::new(self.len);
-        for (word, slot) in mask.words_mut().iter_mut().zip(self.mask.iter()) {
-            // SAFETY: a run borrows the field, so none is going on.
-            *word = unsafe { slot.read() };
+        for (word, found) in mask.words_mut().iter_mut().zip(self.mask.iter()) {
+            // ORDERING: Relaxed: a run borrows the field, so none is going on, and its end has been waited for.
+            *word = found.load(Ordering::Relaxed);
         }
         mask
     }
@@ -212,8 +214,8 @@ impl<M: Machine> TileWork for Frame<'_, M> {
                 continue;
             }
             for (block, word) in blocks.zip(words) {
-                // SAFETY: no other processor works on this piece, and the words of others are not written.
-                unsafe { self.field.mask[block].write(*word) };
+                // ORDERING: Relaxed: nobody reads the mask before the run has ended, which whoever asked for it waits for.
+                self.field.mask[block].store(*word, Ordering::Relaxed);
             }
         }
     }

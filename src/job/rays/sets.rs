@@ -38,8 +38,8 @@ pub const KINDS: &[Kind] = &[
     Kind { name: "edge", kind: RayKind::Edge },
 ];
 
-/// Pixels across and down that a camera's rays are taken by: a packet is a square and not a line.
-const BLOCK: u32 = 8;
+/// Pixels across and down that a camera's rays are taken by: a packet's 16 are a square.
+const BLOCK: u32 = 4;
 
 /// About so many rays of a kind through a scene; a camera's are the next square. None where there is nothing to aim at.
 pub fn ray_set(

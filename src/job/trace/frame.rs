@@ -2,10 +2,13 @@
 
 use std::ops::Range;
 
-use crate::geometry::{Hit, Ray};
+use glam::Vec3;
+
+use crate::geometry::Ray;
 use crate::machine::{Machine, Processor, Slot};
 use crate::scheme::tiles::TileWork;
 
+use super::film::Claim;
 use super::{Counts, Eye, Film, TileCosts, Tracer};
 
 /// A picture cut into tiles, numbered row by row; those at its right and lower edge may be smaller.
@@ -48,6 +51,12 @@ impl Tiles {
     }
 }
 
+/// Pixels across and down whose rays come one after the other: as many as go in a packet, and as near one another as
+/// can be.
+const SQUARE: usize = 4;
+/// The most pixels whose rays are asked about together: those of the paper's tile.
+const TOGETHER: usize = 128;
+
 /// The picture of one camera, for a tile scheme to share out.
 pub struct Frame<'a, M: Machine> {
     tracer: Tracer<'a>,
@@ -59,10 +68,15 @@ pub struct Frame<'a, M: Machine> {
 }
 
 impl<'a, M: Machine> Frame<'a, M> {
-    /// A picture as large as the film.
-    pub fn new(tracer: Tracer<'a>, eye: Eye, tile: (u32, u32), film: &'a Film<M>) -> Self {
+    /// A picture as large as the film, which it has to itself.
+    ///
+    /// # Panics
+    /// If the camera is before a picture of another size.
+    pub fn new(tracer: Tracer<'a>, eye: Eye, tile: (u32, u32), film: &'a mut Film<M>) -> Self {
         assert_eq!(eye.size(), film.size(), "the camera is before this very picture");
-        Self { tracer, eye, tiles: Tiles::new(film.size(), tile), film, costs: None }
+        let tiles = Tiles::new(film.size(), tile);
+        film.cut(tiles.count());
+        Self { tracer, eye, tiles, film, costs: None }
     }
 
     /// The same, each tile charged what it was measured to cost.
@@ -80,17 +94,48 @@ impl<'a, M: Machine> Frame<'a, M> {
     }
 
     /// Traces one tile.
+    ///
+    /// # Panics
+    /// If another processor is at this tile.
     pub(super) fn trace(&self, tile: usize, counts: &mut Counts) {
+        let claim = self.film.claim(tile);
         let (across, down) = self.tiles.pixels(tile);
-        let pixels = || down.clone().flat_map(|y| across.clone().map(move |x| (x, y)));
-        let rays: Vec<Ray> = pixels().map(|(x, y)| self.eye.ray(x, y)).collect();
-        let mut hits: Vec<Option<Hit>> = vec![None; rays.len()];
-        self.tracer.intersector().closest_coherent(&rays, &mut hits);
+        let squares = down.clone().step_by(SQUARE).flat_map(|top| {
+            let lefts = across.clone().step_by(SQUARE);
+            lefts.map(move |left| (left, top))
+        });
+        let mut pixels = [(0, 0); TOGETHER];
+        let mut count = 0;
+        for (left, top) in squares {
+            if count + SQUARE * SQUARE > TOGETHER {
+                self.trace_pixels(&claim, &pixels[..count], counts);
+                count = 0;
+            }
+            for y in top..down.end.min(top + SQUARE as u32) {
+                for x in left..across.end.min(left + SQUARE as u32) {
+                    pixels[count] = (x, y);
+                    count += 1;
+                }
+            }
+        }
+        self.trace_pixels(&claim, &pixels[..count], counts);
+    }
+
+    /// Traces some pixels of a claimed tile, not more than are asked about together.
+    fn trace_pixels(&self, _claim: &Claim<'_>, pixels: &[(u32, u32)], counts: &mut Counts) {
+        let mut rays = [Ray::new(Vec3::ZERO, Vec3::ZERO); TOGETHER];
+        let mut hits = [None; TOGETHER];
+        let (rays, hits) = (&mut rays[..pixels.len()], &mut hits[..pixels.len()]);
+        for (ray, (x, y)) in rays.iter_mut().zip(pixels) {
+            *ray = self.eye.ray(*x, *y);
+        }
+        self.tracer.intersector().closest_coherent(rays, hits);
         counts.eye += rays.len() as u64;
-        for (((x, y), ray), hit) in pixels().zip(&rays).zip(hits) {
-            let colour = self.tracer.seen(ray, hit, counts);
-            // SAFETY: no other processor works on this tile, and the pixels of others are not written.
-            unsafe { self.film.slot(x, y).write(colour.to_array()) };
+        for (((x, y), ray), hit) in pixels.iter().zip(rays).zip(hits) {
+            let colour = self.tracer.seen(ray, *hit, counts);
+            // SAFETY: the claim keeps everybody else from this tile, and the pixels of others are not written. What the
+            // last to have the tile wrote happened before the claim.
+            unsafe { self.film.slot(*x, *y).write(colour.to_array()) };
         }
     }
 }
@@ -112,6 +157,98 @@ impl<M: Machine> TileWork for Frame<'_, M> {
             if let Some(costs) = self.costs {
                 cpu.charge(costs.cycles(tile));
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::sync::Barrier;
+
+    use super::super::{Look, World};
+    use super::*;
+    use crate::geometry::{Camera, Hit, Lens};
+    use crate::machine::Threads;
+    use crate::scene::Scene;
+    use crate::structure::bvh::Intersector;
+
+    /// Meets nothing, and keeps who asks about rays together for as long as others take.
+    struct Slow {
+        asked: Barrier,
+        answer: Barrier,
+    }
+
+    impl Intersector for Slow {
+        fn closest(&self, _: &Ray) -> Option<Hit> {
+            None
+        }
+        fn occluded(&self, _: &Ray) -> bool {
+            false
+        }
+        fn closest_coherent(&self, _: &[Ray], _: &mut [Option<Hit>]) {
+            self.asked.wait();
+            self.answer.wait();
+        }
+    }
+
+    /// Breaks down.
+    struct Broken;
+
+    impl Intersector for Broken {
+        fn closest(&self, _: &Ray) -> Option<Hit> {
+            panic!("it broke down")
+        }
+        fn occluded(&self, _: &Ray) -> bool {
+            false
+        }
+    }
+
+    fn eye() -> Eye {
+        let lens = Lens::Symmetric { fov_y: 0.8, aspect: 2.0 };
+        Eye::new(&Camera::look_at(Vec3::ZERO, Vec3::Z, Vec3::Y, lens, 0.1, 10.0).unwrap(), 8, 4)
+    }
+
+    #[test]
+    fn who_takes_a_tile_that_another_is_at_is_stopped() {
+        let world = World::new(Scene::new("nothing"));
+        let slow = Slow { asked: Barrier::new(2), answer: Barrier::new(2) };
+        let threads = Threads::new(1).unwrap();
+        let mut film = Film::new(&threads, 8, 4).unwrap();
+        let frame = Frame::new(Tracer::new(&world, &slow, Look::default()), eye(), (4, 4), &mut film);
+        let trace = &|processor: usize, tile: usize| {
+            let mut counts = Counts::default();
+            frame.work_on(tile..tile + 1, &mut counts, &threads.outside(processor, 3));
+            counts.eye
+        };
+        std::thread::scope(|scope| {
+            let first = scope.spawn(move || trace(0, 0));
+            slow.asked.wait();
+            let stopped = catch_unwind(AssertUnwindSafe(|| trace(1, 0))).unwrap_err();
+            let message = stopped.downcast_ref::<String>().unwrap();
+            assert!(message.contains("tile 0 is being traced already"), "{message}");
+            slow.answer.wait();
+            assert_eq!(first.join().unwrap(), 16);
+            // Free again, and the other never was taken.
+            for tile in [0, 1] {
+                let next = scope.spawn(move || trace(2, tile));
+                slow.asked.wait();
+                slow.answer.wait();
+                assert_eq!(next.join().unwrap(), 16);
+            }
+        });
+    }
+
+    #[test]
+    fn a_tile_whose_tracing_broke_down_is_free_again() {
+        let world = World::new(Scene::new("nothing"));
+        let threads = Threads::new(1).unwrap();
+        let mut film = Film::new(&threads, 8, 4).unwrap();
+        let frame = Frame::new(Tracer::new(&world, &Broken, Look::default()), eye(), (8, 4), &mut film);
+        for _ in 0..2 {
+            let broke =
+                catch_unwind(AssertUnwindSafe(|| frame.trace(0, &mut Counts::default()))).unwrap_err();
+            assert_eq!(broke.downcast_ref::<&str>(), Some(&"it broke down"));
         }
     }
 }

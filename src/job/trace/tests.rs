@@ -91,7 +91,7 @@ fn check_all<M: Machine>(machine: &M, expected: &(Image, Counts), tile: (u32, u3
         for processors in [1, 2, 3, 7] {
             let mut film = Film::new(machine, width, height).unwrap();
             let eye = Eye::new(&camera, width, height);
-            let frame = Frame::new(Tracer::new(&world, &list, Look::default()), eye, tile, &film);
+            let frame = Frame::new(Tracer::new(&world, &list, Look::default()), eye, tile, &mut film);
             let costs =
                 TileCosts::new((0..frame.tiles().count()).map(|i| (i * 37 % 91) as f64).collect(), 2.0);
             let frame = frame.charged(&costs);
@@ -313,9 +313,9 @@ fn costs_are_measured_once_and_charged_without_tracing() {
     let world = World::new(scene.clone());
     let list = List(world.items());
     let threads = Threads::new(1).unwrap();
-    let film = Film::new(&threads, 70, 30).unwrap();
+    let mut film = Film::new(&threads, 70, 30).unwrap();
     let tracer = Tracer::new(&world, &list, Look::default());
-    let frame = Frame::new(tracer, Eye::new(&camera, 70, 30), Tiles::OF_PAPER, &film);
+    let frame = Frame::new(tracer, Eye::new(&camera, 70, 30), Tiles::OF_PAPER, &mut film);
     let (costs, counts) = TileCosts::measure(&threads, &frame, 2).unwrap();
     assert_eq!((costs.len(), counts.eye), (3 * 8, 2100));
     assert!(costs.nanoseconds().iter().all(|cost| *cost > 0.0));

@@ -152,7 +152,7 @@ impl TraceStage {
     }
 
     /// The picture of a frame, to be shared out.
-    fn frame<'a, M: Machine>(&'a self, frame: usize, film: &'a Film<M>) -> Frame<'a, M> {
+    fn frame<'a, M: Machine>(&'a self, frame: usize, film: &'a mut Film<M>) -> Frame<'a, M> {
         let tracer = Tracer::new(&self.world, &self.hierarchy, self.look);
         Frame::new(tracer, self.eyes[frame], self.tile, film)
     }
@@ -165,14 +165,16 @@ impl TraceStage {
     /// What each tile takes on one thread, and what rays, by frame.
     fn costs(&self, team: &Threads) -> Result<&[(TileCosts, Counts)], MeasureError> {
         if self.costs.get().is_none() {
-            let film = film(team, self.eyes.first().map_or((1, 1), Eye::size))?;
+            let mut film = film(team, self.eyes.first().map_or((1, 1), Eye::size))?;
             let mut all: Vec<(TileCosts, Counts)> = Vec::new();
             for (number, eye) in self.eyes.iter().enumerate() {
                 // A view that stays is measured once.
                 let same = self.eyes[..number].iter().position(|before| before == eye);
                 all.push(match same {
                     Some(same) => all[same].clone(),
-                    None => TileCosts::measure(team, &self.frame(number, &film), ROUNDS).map_err(failed)?,
+                    None => {
+                        TileCosts::measure(team, &self.frame(number, &mut film), ROUNDS).map_err(failed)?
+                    }
                 });
             }
             let _ = self.costs.set(all);
@@ -186,7 +188,7 @@ impl TraceStage {
             return Ok(picture.clone());
         }
         let mut film = film(team, self.eyes[frame].size())?;
-        share("serial", team, 1, &self.frame(frame, &film)).map_err(failed)?;
+        share("serial", team, 1, &self.frame(frame, &mut film)).map_err(failed)?;
         let picture = Rc::new(film.image());
         self.pictures.borrow_mut()[frame] = Some(picture.clone());
         Ok(picture)
@@ -236,10 +238,10 @@ impl<H: Borrow<M>, M: Machine> PictureSubject<H, M> {
 
     fn share_out(&mut self, frame: usize) -> Result<Outcome, RunError> {
         let machine = self.machine.borrow();
-        match &self.way {
+        match &mut self.way {
             Way::Traced(film) => {
-                let again = || self.stage.frame(frame, film);
-                let works: Vec<_> = std::iter::repeat_with(again).take(self.stage.frames_a_run).collect();
+                let picture = self.stage.frame(frame, film);
+                let works = vec![&picture; self.stage.frames_a_run];
                 let shares = self.scheme.run_frames(machine, &works)?;
                 let mut rays = Counts::default();
                 shares.iter().for_each(|share| rays += share.found);

@@ -12,7 +12,7 @@ mod wide;
 
 pub use binary::{BinaryBvh, BinaryNode, BvhStatistics};
 pub use instances::{Instances, Placement};
-pub use leaks::leaks;
+pub use leaks::{leaks, leaks_together};
 pub use place::{Place, placed_box};
 pub use traverse::{RayCounts, TriangleList};
 pub use wide::{BoxBvh, WideBvh};

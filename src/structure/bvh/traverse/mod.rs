@@ -10,13 +10,13 @@ mod nearest;
 mod packet;
 mod single;
 mod waiting;
+mod walk;
 
 pub use count::RayCounts;
 pub(super) use count::{Count, Uncounted};
 pub use list::TriangleList;
-use nearest::Nearest;
 pub(super) use packet::RAYS;
-use packet::together as walk_together;
+use packet::{Together, together as walk_together};
 use single::through as walk_single;
 
 use super::{Intersector, WideBvh};
@@ -63,8 +63,11 @@ macro_rules! on_unit_through {
     };
 }
 
-on_unit_through!(fn through(aim: &Aim) -> Nearest = walk_single, ANY);
-on_unit_through!(fn together(aims: &[Aim; RAYS], span: &Span) -> Option<[Nearest; RAYS]> = walk_together);
+on_unit_through!(fn through(ray: &Ray) -> Option<Hit> = walk_single, ANY);
+on_unit_through!(fn together(aims: &[Aim; RAYS], span: &Span) -> Together = walk_together);
+
+/// How many packets' rays are asked about one by one, after those of one have come apart, before it is tried again.
+const ALONE: usize = 7;
 
 impl<T: TriangleTest> WideBvh<T> {
     /// The nearest hit, by a vector unit of one's choice.
@@ -89,53 +92,53 @@ impl<T: TriangleTest> WideBvh<T> {
         self.occluded_to(self.unit, ray, counts)
     }
 
-    /// The nearest hits of rays that go much the same way, by a vector unit of one's choice.
+    /// The nearest hits of rays that go much the same way, by a vector unit of one's choice. Where they turn out not to,
+    /// they are asked about one by one, at little loss.
     ///
     /// # Panics
     /// If there are not as many `hits` as `rays`.
     pub fn closest_coherent_on(&self, unit: Unit, rays: &[Ray], hits: &mut [Option<Hit>]) {
         assert_eq!(rays.len(), hits.len(), "a place for the hit of each ray");
+        let mut alone = 0usize;
         for (rays, hits) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)) {
-            if !self.packet(unit, rays, hits) {
+            let together = if alone == 0 { self.packet(unit, rays, hits) } else { None };
+            let Some(stayed) = together else {
+                alone = alone.saturating_sub(1);
                 for (ray, hit) in rays.iter().zip(hits) {
                     *hit = self.closest_on(unit, ray);
                 }
-            }
+                continue;
+            };
+            alone = if stayed { 0 } else { ALONE };
         }
     }
 
-    /// The nearest hits of a packet. False, and no hits, if its rays are to go on their own.
-    fn packet(&self, unit: Unit, rays: &[Ray], hits: &mut [Option<Hit>]) -> bool {
+    /// The nearest hits of a packet, and whether it stayed together. `None`, and no hits, if its rays do not go the same
+    /// way, or are too few.
+    fn packet(&self, unit: Unit, rays: &[Ray], hits: &mut [Option<Hit>]) -> Option<bool> {
         // What is left over at the end is not worth it.
         if rays.len() < RAYS / 2 {
-            return false;
+            return None;
         }
-        let Some(first) = Aim::new(&rays[0], self.scale) else { return false };
-        let mut aims = [first; RAYS];
+        let mut aims = [Aim::new(&rays[0], self.scale)?; RAYS];
         for (aim, ray) in aims.iter_mut().zip(rays) {
-            match Aim::new(ray, self.scale) {
-                Some(made) => *aim = made,
-                None => return false,
-            }
+            *aim = Aim::new(ray, self.scale)?;
         }
-        let found =
-            Span::of(&aims).and_then(|span| together::<T, _>(unit, self, &mut Uncounted, &aims, &span));
-        let Some(found) = found else { return false };
-        for ((hit, nearest), aim) in hits.iter_mut().zip(&found).zip(&aims) {
+        let found = together::<T, _>(unit, self, &mut Uncounted, &aims, &Span::of(&aims)?);
+        for ((hit, nearest), aim) in hits.iter_mut().zip(&found.nearest).zip(&aims) {
             *hit = nearest.hit(aim);
         }
-        true
+        Some(found.stayed)
     }
 
     #[inline]
     fn closest_to(&self, unit: Unit, ray: &Ray, count: &mut impl Count) -> Option<Hit> {
-        let aim = Aim::new(ray, self.scale)?;
-        through::<T, _, false>(unit, self, count, &aim).hit(&aim)
+        through::<T, _, false>(unit, self, count, ray)
     }
 
     #[inline]
     fn occluded_to(&self, unit: Unit, ray: &Ray, count: &mut impl Count) -> bool {
-        Aim::new(ray, self.scale).is_some_and(|aim| through::<T, _, true>(unit, self, count, &aim).is_hit())
+        through::<T, _, true>(unit, self, count, ray).is_some()
     }
 }
 

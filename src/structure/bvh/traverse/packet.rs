@@ -5,25 +5,39 @@
 //! that the rays' origins and rates span. Each step keeps the order of its arguments when it is rounded, so what one ray
 //! meets on its own the packet meets. So are the boxes of a block's triangles; the triangles left over are tested
 //! against as many rays at a time as there are lanes, by the same operations as one ray's, so every hit is the same.
+//! Rays that turn out to have little in common go on one by one.
 
 use super::super::WideBvh;
-use super::super::wide::{Alone, TRIANGLES, Together, WIDTH};
+use super::super::wide::{Alone, Block, TRIANGLES, Together as Four, WIDTH};
 use super::count::Count;
 use super::nearest::Nearest;
+use super::single::go_on;
 use super::waiting::{PLACES, Stack};
-use crate::geometry::hit::{Aim, Beam, Span, TriangleTest, meet, sides};
+use super::walk::{Walker, walk};
+use crate::geometry::hit::{Aim, Beam, Span, Spread, TriangleTest, meet, sides};
 use crate::geometry::lanes::Lanes;
+use std::marker::PhantomData;
 use std::mem::MaybeUninit;
+use std::ops::ControlFlow;
 
 /// Rays a packet.
 pub(in crate::structure::bvh) const RAYS: usize = 16;
 
-/// How many nodes and blocks a packet may test before its rays go on their own: about as many as they would take if
-/// they had nothing in common.
-const BUDGET: usize = 160;
+/// How many nodes and blocks a packet may test before its rays go on by themselves. Where triangles are so fine that no
+/// two rays meet the same, 16 take some hundred and seventy of both by themselves; those worth keeping together take
+/// fewer than this.
+const MOST: usize = 64;
 
-/// Takes the rays through, all of which go together ([`Span::of`]): the nearest hit of each. `None` if they have little
-/// in common after all.
+/// What comes of a packet.
+pub(super) struct Together {
+    /// The nearest hit of each ray.
+    pub(super) nearest: [Nearest; RAYS],
+    /// Whether they stayed together to the end.
+    pub(super) stayed: bool,
+}
+
+/// Takes the rays through, all of which go together ([`Span::of`]): if they have little in common after all, each goes
+/// on by itself, from the nearest hit it has by then.
 ///
 /// # Safety
 /// The processor has the vector units of the lanes for nodes `N` and for blocks `B`.
@@ -33,107 +47,114 @@ pub(super) unsafe fn together<N: Lanes, B: Lanes, T: TriangleTest, C: Count>(
     count: &mut C,
     aims: &[Aim; RAYS],
     span: &Span,
-) -> Option<[Nearest; RAYS]> {
-    let mut nearest = aims.each_ref().map(Nearest::none);
-    if bvh.nodes.is_empty() {
-        return Some(nearest);
-    }
-    if bvh.waiting > PLACES {
-        return None;
-    }
-    let mut places = [const { MaybeUninit::uninit() }; PLACES];
-    let mut stack = Stack::of(&mut places);
-    let mut farthest = span.far;
-    let mut steps = 0;
-    // SAFETY: the processor is the caller's.
-    let (wide, narrow) = unsafe { (span.spread::<N>(), span.spread::<B>()) };
-    let rows = span.rows();
+) -> Together {
     // As many as it takes: the fewer lanes a vector has, the more beams there are.
     let mut beams = [const { MaybeUninit::<Beam<N>>::uninit() }; RAYS];
     for (beam, from) in beams.iter_mut().zip((0..RAYS).step_by(N::LEN)) {
-        // SAFETY: as above; the lanes are below 16.
+        // SAFETY: the processor is the caller's; the lanes are below 16.
         beam.write(unsafe { Beam::several(aims, from) });
     }
-    let mut at = bvh.root;
-    'next: loop {
-        while at.blocks() == 0 {
-            count.node();
-            steps += 1;
-            // SAFETY: children are nodes that are there, and rows are below six.
-            let node = unsafe { bvh.nodes.get_unchecked(at.index()) };
-            let mut enters = [0.0f32; WIDTH];
-            let mut hit = 0u64;
-            for from in (0..WIDTH).step_by(N::LEN) {
-                // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 8.
-                unsafe {
-                    let first = [node.row(rows[0], from), node.row(rows[1], from), node.row(rows[2], from)];
-                    let last = [
-                        node.row(rows[0] ^ 1, from),
-                        node.row(rows[1] ^ 1, from),
-                        node.row(rows[2] ^ 1, from),
-                    ];
-                    let [first, last] = wide.slab(N::splat(farthest), first, last);
-                    hit |= last.at_least(first) << from;
-                    first.store(&mut enters, from);
-                }
-            }
-            if hit == 0 {
-                break;
-            }
-            // SAFETY: there is one, and no more wait than the collapse counted.
-            at = unsafe { stack.nearest(hit, &enters, node) };
+    // SAFETY: the processor is the caller's.
+    let mut several = unsafe {
+        Several::<N, B, T> {
+            aims,
+            span,
+            wide: span.spread(),
+            narrow: span.spread(),
+            beams,
+            nearest: aims.each_ref().map(Nearest::none),
+            farthest: span.far,
+            vectors: 0,
+            test: PhantomData,
         }
-        for of in 0..at.blocks() {
-            count.block();
-            steps += 1;
-            // SAFETY: children are blocks that are there.
-            let block = unsafe { bvh.blocks.get_unchecked(at.index() + of) };
-            let mut met = 0u64;
-            for from in (0..TRIANGLES).step_by(B::LEN) {
-                // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 4.
-                unsafe {
-                    let some = Together { block, from };
-                    let (x, y, z) = (
-                        sides(span.rises, &some, 0),
-                        sides(span.rises, &some, 1),
-                        sides(span.rises, &some, 2),
-                    );
-                    let [first, last] =
-                        narrow.slab(B::splat(farthest), [x[0], y[0], z[0]], [x[1], y[1], z[1]]);
-                    met |= last.at_least(first) << from;
-                }
+    };
+    let mut places = [const { MaybeUninit::uninit() }; PLACES];
+    let mut stayed = bvh.waiting <= PLACES;
+    if stayed {
+        // SAFETY: the processor is the caller's, and the places are enough.
+        stayed = unsafe { walk::<N, T>(bvh, count, &mut several, Stack::of(&mut places)) }.is_continue();
+    }
+    let mut nearest = several.nearest;
+    if !stayed {
+        for (nearest, aim) in nearest.iter_mut().zip(aims) {
+            // SAFETY: the processor is the caller's.
+            *nearest = unsafe { go_on::<N, B, T, C, false>(bvh, count, aim, *nearest) };
+        }
+    }
+    Together { nearest, stayed }
+}
+
+struct Several<'a, N, B, T> {
+    aims: &'a [Aim; RAYS],
+    span: &'a Span,
+    wide: Spread<N>,
+    narrow: Spread<B>,
+    beams: [MaybeUninit<Beam<N>>; RAYS],
+    nearest: [Nearest; RAYS],
+    farthest: f32,
+    /// Vectors of boxes and blocks tested.
+    vectors: usize,
+    test: PhantomData<T>,
+}
+
+impl<N: Lanes, B: Lanes, T: TriangleTest> Walker<N> for Several<'_, N, B, T> {
+    #[inline(always)]
+    fn rows(&self) -> [usize; 3] {
+        self.span.rows()
+    }
+
+    #[inline(always)]
+    fn far(&self) -> f32 {
+        self.farthest
+    }
+
+    #[inline(always)]
+    unsafe fn slab(&mut self, first: [N; 3], last: [N; 3]) -> [N; 2] {
+        self.vectors += 1;
+        // SAFETY: the processor is the caller's.
+        unsafe { self.wide.slab(N::splat(self.farthest), first, last) }
+    }
+
+    #[inline(always)]
+    unsafe fn block(&mut self, block: &Block) -> ControlFlow<()> {
+        self.vectors += WIDTH / N::LEN;
+        if self.vectors > MOST * (WIDTH / N::LEN) {
+            return ControlFlow::Break(());
+        }
+        let rises = self.span.rises;
+        let mut met = 0u64;
+        for from in (0..TRIANGLES).step_by(B::LEN) {
+            // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 4.
+            unsafe {
+                let some = Four { block, from };
+                let (x, y, z) = (sides(rises, &some, 0), sides(rises, &some, 1), sides(rises, &some, 2));
+                let [first, last] =
+                    self.narrow.slab(B::splat(self.farthest), [x[0], y[0], z[0]], [x[1], y[1], z[1]]);
+                met |= last.at_least(first) << from;
             }
-            let mut is_nearer = false;
-            while met != 0 {
-                let lane = met.trailing_zeros() as usize & (TRIANGLES - 1);
-                met &= met - 1;
-                let item = block.items[lane];
-                for (beam, from) in beams.iter().zip((0..RAYS).step_by(N::LEN)) {
-                    // SAFETY: as many beams were written as there are steps; the processor is the caller's.
-                    unsafe {
-                        let beam = beam.assume_init_ref();
-                        let Some(found) = meet::<N, T>(beam, &Alone { block, lane }) else { continue };
-                        let lanes = found.lanes & found.t.at_least(N::splat(0.0));
-                        if lanes != 0 {
-                            is_nearer |=
-                                Nearest::take_each(&mut nearest[from..], &aims[from..], &found, lanes, item);
-                        }
+        }
+        let mut is_nearer = false;
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize & (TRIANGLES - 1);
+            met &= met - 1;
+            let item = block.items[lane];
+            for (beam, from) in self.beams.iter().zip((0..RAYS).step_by(N::LEN)) {
+                // SAFETY: as many beams were written as there are steps; the processor is the caller's.
+                unsafe {
+                    let beam = beam.assume_init_ref();
+                    let Some(found) = meet::<N, T>(beam, &Alone { block, lane }) else { continue };
+                    let lanes = found.lanes & found.t.at_least(N::splat(0.0));
+                    if lanes != 0 {
+                        let (nearest, aims) = (&mut self.nearest[from..], &self.aims[from..]);
+                        is_nearer |= Nearest::take_each(nearest, aims, &found, lanes, item);
                     }
                 }
             }
-            if is_nearer {
-                farthest = nearest.iter().fold(0.0, |most, ray| if ray.t > most { ray.t } else { most });
-            }
         }
-        if steps > BUDGET {
-            return None;
+        if is_nearer {
+            self.farthest =
+                self.nearest.iter().fold(0.0, |most, ray| if ray.t > most { ray.t } else { most });
         }
-        loop {
-            let Some(waiting) = stack.pop() else { return Some(nearest) };
-            if waiting.enters() <= farthest {
-                at = waiting.child();
-                continue 'next;
-            }
-        }
+        ControlFlow::Continue(())
     }
 }

@@ -1,15 +1,19 @@
 //! One ray on its own.
 
 use super::super::WideBvh;
-use super::super::wide::{TRIANGLES, Together, WIDTH};
+use super::super::wide::{Block, TRIANGLES, Together};
 use super::count::Count;
 use super::nearest::Nearest;
 use super::waiting::{PLACES, Stack};
+use super::walk::{Walker, walk};
 use crate::geometry::hit::{Aim, Beam, TriangleTest, meet, slab};
 use crate::geometry::lanes::Lanes;
+use crate::geometry::{Hit, Ray};
+use std::marker::PhantomData;
 use std::mem::MaybeUninit;
+use std::ops::ControlFlow;
 
-/// Takes a ray through: the nearest hit, or with `ANY` whichever is found first.
+/// Takes a ray through: the nearest hit, or with `ANY` whichever is found first; `None` if it hits nothing.
 ///
 /// # Safety
 /// The processor has the vector units of the lanes for nodes `N` and for blocks `B`.
@@ -17,89 +21,91 @@ use std::mem::MaybeUninit;
 pub(super) unsafe fn through<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
     bvh: &WideBvh<T>,
     count: &mut C,
-    aim: &Aim,
-) -> Nearest {
-    let mut places = [const { MaybeUninit::uninit() }; PLACES];
-    if bvh.waiting <= PLACES {
-        // SAFETY: the processor is the caller's.
-        return unsafe { walk::<N, B, T, C, ANY>(bvh, count, aim, Stack::of(&mut places)) };
-    }
-    let mut many = vec![MaybeUninit::uninit(); bvh.waiting];
-    // SAFETY: as above.
-    unsafe { walk::<N, B, T, C, ANY>(bvh, count, aim, Stack::of(&mut many)) }
+    ray: &Ray,
+) -> Option<Hit> {
+    // Here, where the unit's own instructions make it and its numbers need not go through memory.
+    let aim = &Aim::new(ray, bvh.scale)?;
+    // SAFETY: the processor is the caller's.
+    unsafe { go_on::<N, B, T, C, ANY>(bvh, count, aim, Nearest::none(aim)) }.hit(aim)
 }
 
-/// The walk itself. In addition: `stack` has as many places as may wait.
+/// Takes a ray through that may have a hit already: what is nearest then.
+///
+/// # Safety
+/// The processor has the vector units of the lanes for nodes `N` and for blocks `B`.
 #[inline(always)]
-unsafe fn walk<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
+pub(super) unsafe fn go_on<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
     bvh: &WideBvh<T>,
     count: &mut C,
     aim: &Aim,
-    mut stack: Stack<'_>,
+    nearest: Nearest,
 ) -> Nearest {
-    let mut nearest = Nearest::none(aim);
-    if bvh.nodes.is_empty() {
-        return nearest;
-    }
     // SAFETY: the processor is the caller's.
-    let (beam, block_beam) = unsafe { (Beam::<N>::one(aim), Beam::<B>::one(aim)) };
-    let rows = beam.rows();
-    let mut at = bvh.root;
-    'next: loop {
-        while at.blocks() == 0 {
-            count.node();
-            // SAFETY: children are nodes that are there, and rows are below six.
-            let node = unsafe { bvh.nodes.get_unchecked(at.index()) };
-            let mut enters = [0.0f32; WIDTH];
-            let mut hit = 0u64;
-            for from in (0..WIDTH).step_by(N::LEN) {
-                // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 8.
-                unsafe {
-                    let reach = [N::splat(aim.near), N::splat(nearest.t)];
-                    let first = [node.row(rows[0], from), node.row(rows[1], from), node.row(rows[2], from)];
-                    let last = [
-                        node.row(rows[0] ^ 1, from),
-                        node.row(rows[1] ^ 1, from),
-                        node.row(rows[2] ^ 1, from),
-                    ];
-                    let [first, last] = slab(&beam, reach, first, last);
-                    hit |= last.at_least(first) << from;
-                    first.store(&mut enters, from);
-                }
-            }
-            if hit == 0 {
-                break;
-            }
-            // SAFETY: there is one, and no more wait than the collapse counted.
-            at = unsafe { stack.nearest(hit, &enters, node) };
+    let mut one = unsafe {
+        One::<N, B, T, ANY> {
+            beam: Beam::one(aim),
+            block_beam: Beam::one(aim),
+            near: aim.near,
+            nearest,
+            test: PhantomData,
         }
-        // A node none of whose boxes is met falls through with no blocks.
-        for of in 0..at.blocks() {
-            count.block();
-            // SAFETY: children are blocks that are there.
-            let block = unsafe { bvh.blocks.get_unchecked(at.index() + of) };
-            for from in (0..TRIANGLES).step_by(B::LEN) {
-                // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 4.
-                unsafe {
-                    let Some(found) = meet::<B, T>(&block_beam, &Together { block, from }) else { continue };
-                    let in_reach =
-                        found.t.at_least(B::splat(aim.near)) & B::splat(nearest.t).at_least(found.t);
-                    let lanes = found.lanes & in_reach;
-                    if lanes != 0 {
-                        nearest.take(&found, lanes, &block.items[from..]);
-                        if ANY && nearest.is_hit() {
-                            return nearest;
-                        }
+    };
+    let mut places = [const { MaybeUninit::uninit() }; PLACES];
+    let mut many = Vec::new();
+    let places = if bvh.waiting <= PLACES {
+        &mut places[..]
+    } else {
+        many.resize_with(bvh.waiting, MaybeUninit::uninit);
+        &mut many[..]
+    };
+    // Whether it broke off, at the first of any hits, is to be seen by there being one.
+    // SAFETY: the processor is the caller's, and the places are enough.
+    let _ = unsafe { walk::<N, T>(bvh, count, &mut one, Stack::of(places)) };
+    one.nearest
+}
+
+struct One<N, B, T, const ANY: bool> {
+    beam: Beam<N>,
+    block_beam: Beam<B>,
+    near: f32,
+    nearest: Nearest,
+    test: PhantomData<T>,
+}
+
+impl<N: Lanes, B: Lanes, T: TriangleTest, const ANY: bool> Walker<N> for One<N, B, T, ANY> {
+    #[inline(always)]
+    fn rows(&self) -> [usize; 3] {
+        self.beam.rows()
+    }
+
+    #[inline(always)]
+    fn far(&self) -> f32 {
+        self.nearest.t
+    }
+
+    #[inline(always)]
+    unsafe fn slab(&mut self, first: [N; 3], last: [N; 3]) -> [N; 2] {
+        // SAFETY: the processor is the caller's.
+        unsafe { slab(&self.beam, [N::splat(self.near), N::splat(self.nearest.t)], first, last) }
+    }
+
+    #[inline(always)]
+    unsafe fn block(&mut self, block: &Block) -> ControlFlow<()> {
+        for from in (0..TRIANGLES).step_by(B::LEN) {
+            // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 4.
+            unsafe {
+                let Some(found) = meet::<B, T>(&self.block_beam, &Together { block, from }) else { continue };
+                let in_reach =
+                    found.t.at_least(B::splat(self.near)) & B::splat(self.nearest.t).at_least(found.t);
+                let lanes = found.lanes & in_reach;
+                if lanes != 0 {
+                    self.nearest.take(&found, lanes, &block.items[from..]);
+                    if ANY && self.nearest.is_hit() {
+                        return ControlFlow::Break(());
                     }
                 }
             }
         }
-        loop {
-            let Some(waiting) = stack.pop() else { return nearest };
-            if waiting.enters() <= nearest.t {
-                at = waiting.child();
-                continue 'next;
-            }
-        }
+        ControlFlow::Continue(())
     }
 }

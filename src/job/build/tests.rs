@@ -3,8 +3,9 @@ use crate::geometry::Aabb;
 use crate::machine::Threads;
 use crate::machine::simulated::{Model, Simulated};
 use crate::scheme::tiles::SCHEMES;
-use crate::structure::bvh::build::phased::{Alone, Way};
-use crate::structure::bvh::build::{Builder, Settings};
+use crate::structure::bvh::BinaryBvh;
+use crate::structure::bvh::build::phased::{Alone, Phased, Way};
+use crate::structure::bvh::build::{Builder, Input, Settings};
 use glam::Vec3;
 use std::sync::Mutex;
 
@@ -26,12 +27,13 @@ fn same_everywhere<M: Machine>(machine: &M, processors: usize) {
             let processors = if about.name == "serial" { 1 } else { processors };
             let mut scheme = Scheme::new(about.name, machine, processors, Default::default()).unwrap();
             let mut bvh = BinaryBvh::default();
-            build(&mut builder, &Input::of(&boxes), &mut bvh, machine, &mut scheme, processors).unwrap();
+            let costs = Model::named("e4000").map(|model| Costs::measured_on(&model)).unwrap();
+            let mut crew = Crew::new(machine, &mut scheme, processors).charging(costs);
+            builder.build(&Input::of(&boxes), &mut bvh, &mut crew).unwrap();
             assert_eq!(bvh, expected, "{name} by {}", about.name);
             let mut bad = boxes.clone();
             bad[12_345].max.x = f32::NAN;
-            let error = build(&mut builder, &Input::of(&bad), &mut bvh, machine, &mut scheme, processors);
-            let error = error.unwrap_err().to_string();
+            let error = builder.build(&Input::of(&bad), &mut bvh, &mut crew).unwrap_err().to_string();
             assert!(error.contains("12345"), "{error}");
         }
     }
@@ -47,10 +49,13 @@ fn refitted_everywhere<M: Machine>(machine: &M, processors: usize) {
             .unwrap();
         let mut expected = bvh.clone();
         crate::structure::bvh::refit::refit(&mut expected, &after);
-        let job = Refit::new(machine, processors, &bvh);
+        let job = Refit::new(machine, processors, SUBTREES, &bvh);
         for _ in 0..3 {
             let renewed = Mutex::new(vec![0; 50]);
-            let renew = |piece: usize| renewed.lock().unwrap()[piece] += 1;
+            let renew = |piece: usize| {
+                renewed.lock().unwrap()[piece] += 1;
+                1
+            };
             job.run(machine, &mut bvh, |item| after[item as usize], 50, renew).unwrap();
             assert_eq!(bvh, expected, "{count} items");
             assert_eq!(renewed.into_inner().unwrap(), [1; 50], "each piece once");

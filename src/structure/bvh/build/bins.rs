@@ -66,6 +66,11 @@ impl Grating {
         Self { from: [0.0; 3], scale: [1.0; 3], bins }
     }
 
+    /// Bins on each axis.
+    pub(super) fn bins(&self) -> usize {
+        self.bins
+    }
+
     /// Whether all middles are in one place.
     pub(super) fn is_point(&self) -> bool {
         self.scale == [0.0; 3]
@@ -74,7 +79,13 @@ impl Grating {
     /// The bin of an item on an axis.
     #[inline(always)]
     pub(super) fn bin(&self, item: &Item, axis: usize) -> u32 {
-        let bin = (item.middle(axis) - self.from[axis]) * self.scale[axis];
+        self.bin_of(item.middle(axis), axis)
+    }
+
+    /// The bin of a middle on an axis, given twice its size.
+    #[inline(always)]
+    pub(super) fn bin_of(&self, middle: f32, axis: usize) -> u32 {
+        let bin = (middle - self.from[axis]) * self.scale[axis];
         (bin as u32).min(self.bins as u32 - 1)
     }
 

@@ -1,7 +1,9 @@
 //! Places on a Z-order curve through space (Morton 1966), and items sorted by them.
 
 use super::bins::Grating;
-use super::lanes::{Box8, Item};
+use super::lanes::Box8;
+use super::yard::View;
+use crate::geometry::Aabb;
 
 /// Bits of a place on each axis.
 const AXIS_BITS: u32 = 11;
@@ -16,13 +18,14 @@ pub(super) fn item(code: u64) -> usize {
 
 /// Writes the codes of items, place above and number below, sorted to the first of two places. Items in one place
 /// come by their number.
-pub(super) fn sort(items: &[Item], middles: &Box8, codes: &mut [Vec<u64>; 2]) {
+pub(super) fn sort(boxes: &[Aabb], view: &View, middles: &Box8, codes: &mut [Vec<u64>; 2]) {
     let grating = Grating::new(middles, DIGITS);
     let [codes, room] = codes;
     codes.clear();
     let mut counts = vec![[0_u32; DIGITS]; 3];
-    codes.extend(items.iter().enumerate().map(|(number, item)| {
-        let along = |axis| spread(grating.bin(item, axis));
+    codes.extend(boxes.iter().enumerate().map(|(number, bounds)| {
+        let middles = view.bring(bounds).middles();
+        let along = |axis: usize| spread(grating.bin_of(middles[axis], axis));
         let place = along(0) << 2 | along(1) << 1 | along(2);
         for (digit, counts) in counts.iter_mut().enumerate() {
             counts[(place >> (digit as u32 * AXIS_BITS)) as usize % DIGITS] += 1;

@@ -24,6 +24,8 @@ mod binned_sah;
 mod bins;
 mod clip;
 mod curve;
+mod effort;
+mod few;
 mod grid;
 mod grow;
 mod histograms;
@@ -43,6 +45,7 @@ use crate::geometry::Aabb;
 use glam::Vec3;
 
 pub use bins::MOST_BINS;
+pub use effort::Effort;
 
 /// The most nodes on a way from the root to a leaf.
 pub const MOST_DEPTH: usize = 128;
@@ -104,7 +107,7 @@ impl Default for Settings {
             bins: 16,
             most_in_leaf: 8,
             median_leaf: 2,
-            cluster: 8,
+            cluster: 16,
             step_cost: 1.0,
             item_cost: 1.0,
             overlap: 1e-5,

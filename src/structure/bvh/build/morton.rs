@@ -10,9 +10,10 @@
 
 use super::binned_sah::SahRule;
 use super::bins::around;
+use super::few::{FEW, weigh_few};
 use super::grow::{Extent, Plot, Rule, budding, grow};
 use super::lanes::{Box8, Item, Lanes, on_unit};
-use super::yard::{Yard, load_all, make_room};
+use super::yard::{View, Yard, make_room};
 use super::{BuildError, Input, Settings, curve};
 use crate::structure::bvh::{BinaryBvh, BinaryNode};
 
@@ -25,14 +26,14 @@ pub(super) struct Morton {
     above: SahRule,
     /// Cuts within a cluster.
     within: SahRule,
-    /// Items as they come, and in the order of the curve.
-    items: [Vec<Item>; 2],
+    /// Items in the order of the curve.
+    items: Vec<Item>,
     codes: [Vec<u64>; 2],
     /// Where each cluster begins on the curve, and the end of it.
     starts: Vec<u32>,
     clusters: Yard,
     top: BinaryBvh,
-    room: Vec<f32>,
+    room: Vec<(Box8, f32)>,
 }
 
 impl Morton {
@@ -41,7 +42,7 @@ impl Morton {
             cluster: settings.cluster,
             above: SahRule::new(&Settings { most_in_leaf: 1, ..settings.clone() }),
             within: SahRule::new(settings),
-            items: Default::default(),
+            items: Vec::new(),
             codes: Default::default(),
             starts: Vec::new(),
             clusters: Yard::default(),
@@ -58,15 +59,13 @@ impl Morton {
             return Ok(());
         }
         let nothing = Item::new(&Box8::EMPTY, 0, 0);
-        let [raw, along] = &mut self.items;
-        make_room(raw, count, nothing);
-        make_room(along, count, nothing);
-        let (extent, view) = load_all(input.boxes, raw)?;
-        curve::sort(raw, &extent.middles, &mut self.codes);
+        make_room(&mut self.items, count, nothing);
+        let (extent, view) = View::look(input.boxes)?;
+        curve::sort(input.boxes, &view, &extent.middles, &mut self.codes);
         let codes = &self.codes[0];
-        for ((item, place), code) in along.iter_mut().zip(&mut bvh.order).zip(codes) {
-            *item = raw[curve::item(*code)];
-            *place = item.number();
+        for (item, code) in self.items.iter_mut().zip(codes) {
+            let number = curve::item(*code);
+            *item = Item::new(&view.bring(&input.boxes[number]), number as u32, 1);
         }
         self.starts.clear();
         curve::clusters(codes, self.cluster, &mut self.starts);
@@ -85,8 +84,8 @@ impl Morton {
         }
         let mut extent = Extent::EMPTY;
         for (i, ends) in self.starts.windows(2).enumerate() {
-            let items = &self.items[1][ends[0] as usize..ends[1] as usize];
-            let bounds = items.iter().fold(Box8::EMPTY, |all, item| all.union(&item.bounds()));
+            let items = &self.items[ends[0] as usize..ends[1] as usize];
+            let bounds = around(self.above.unit, items)[0];
             let middles = Box8::of_point(bounds.middles());
             clusters[i] = Item::new(&bounds, i as u32, items.len() as u32);
             extent = extent.union(&Extent { bounds, middles });
@@ -114,74 +113,84 @@ impl Morton {
                 continue;
             }
             let cluster = self.top.order[node.first as usize] as usize;
-            let items = &self.items[1][self.starts[cluster] as usize..self.starts[cluster + 1] as usize];
-            for (place, item) in order[filled..].iter_mut().zip(items) {
+            let items = &mut self.items[self.starts[cluster] as usize..self.starts[cluster + 1] as usize];
+            self.room.resize(items.len().max(self.room.len()), (Box8::EMPTY, 0.0));
+            let bounds = Box8::new(&node.bounds);
+            let end = filled + items.len();
+            cut(&self.within, items, &bounds, filled, to, nodes, &mut self.room);
+            for (place, item) in order[filled..end].iter_mut().zip(items) {
                 *place = item.number();
             }
-            self.room.resize(items.len().max(self.room.len()), 0.0);
-            let bounds = around(self.within.unit, items)[0];
-            cut(&self.within, items, &bounds, filled, to, nodes, &mut self.room);
-            filled += items.len();
+            filled = end;
         }
     }
 }
 
-/// Cuts a run of the curve where it is cheapest, again and again. Its node, which has its box, is there; the items
-/// begin at `first` of the order.
+/// Cuts a run of the curve where it is cheapest, again and again; a few items are parted whichever way is best. Its node,
+/// which has its box, is there; the items begin at `first` of the order.
 fn cut(
     rule: &SahRule,
-    items: &[Item],
+    items: &mut [Item],
     bounds: &Box8,
     first: usize,
     node: usize,
     nodes: &mut Vec<BinaryNode>,
-    room: &mut [f32],
+    room: &mut [(Box8, f32)],
 ) {
-    let leaf = |nodes: &mut Vec<BinaryNode>| {
-        nodes[node].first = first as u32;
-        nodes[node].count = items.len() as u32;
+    let count = items.len();
+    let (middle, sides, cost) = match count {
+        1 => (0, [Box8::EMPTY; 2], f32::INFINITY),
+        2..=FEW => {
+            let parting = weigh_few(rule.unit, items);
+            let mut before = [items[0]; FEW];
+            before[..count].copy_from_slice(items);
+            parting.part(&before[..count], items);
+            (parting.count(), parting.bounds, parting.cost)
+        }
+        _ => sweep(rule.unit, items, room),
     };
-    if items.len() == 1 {
-        return leaf(nodes);
+    if count == 1 || rule.is_leaf(count, bounds, cost) {
+        nodes[node].first = first as u32;
+        nodes[node].count = count as u32;
+        return;
     }
-    let (sides, middle) = sweep(rule.unit, items, room);
-    if items.len() <= rule.most_in_leaf() && !rule.pays(items.len(), bounds, sides) {
-        return leaf(nodes);
-    }
-    let (left, rest) = items.split_at(middle);
+    let (left, rest) = items.split_at_mut(middle);
     let pair = nodes.len();
     nodes[node].first = pair as u32;
     nodes[node].count = 0;
-    let bounds = [left, rest].map(|side| around(rule.unit, side)[0]);
-    nodes.extend(bounds.each_ref().map(budding));
-    cut(rule, left, &bounds[0], first, pair, nodes, room);
-    cut(rule, rest, &bounds[1], first + middle, pair + 1, nodes, room);
+    nodes.extend(sides.each_ref().map(budding));
+    cut(rule, left, &sides[0], first, pair, nodes, room);
+    cut(rule, rest, &sides[1], first + middle, pair + 1, nodes, room);
 }
 
 on_unit! {
-    /// Where cutting a run of at least two items costs least: half the areas of both sides, each times its items; and
-    /// how many items are left of it. Room is as long as the run.
-    fn sweep(items: &[Item], room: &mut [f32]) -> (f32, usize) = sweep_with
+    /// Where cutting a run of at least two items costs least: how many items are left of it, the boxes of both sides, and
+    /// half their areas, each times its items. Room is as long as the run at least.
+    fn sweep(items: &[Item], room: &mut [(Box8, f32)]) -> (usize, [Box8; 2], f32) = sweep_with
 }
 
 /// # Safety
 /// The processor has the unit.
 #[inline(always)]
-unsafe fn sweep_with<L: Lanes>(items: &[Item], room: &mut [f32]) -> (f32, usize) {
-    let mut best = (f32::INFINITY, items.len() / 2);
+unsafe fn sweep_with<L: Lanes>(items: &[Item], room: &mut [(Box8, f32)]) -> (usize, [Box8; 2], f32) {
+    let mut best = (1, [Box8::EMPTY; 2], f32::INFINITY);
     // SAFETY: the unit is there.
     unsafe {
         let mut around = L::load(&Box8::EMPTY);
         for at in (1..items.len()).rev() {
             around = around.union(L::load_item(&items[at]));
-            room[at] = around.half_area() * (items.len() - at) as f32;
+            let (right, cost) = &mut room[at];
+            around.store(right);
+            *cost = around.half_area() * (items.len() - at) as f32;
         }
         around = L::load(&Box8::EMPTY);
         for at in 1..items.len() {
             around = around.union(L::load_item(&items[at - 1]));
-            let cost = around.half_area() * at as f32 + room[at];
-            if cost < best.0 {
-                best = (cost, at);
+            let (right, cost) = &room[at];
+            let cost = around.half_area() * at as f32 + cost;
+            if cost < best.2 {
+                around.store(&mut best.1[0]);
+                (best.0, best.1[1], best.2) = (at, *right, cost);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! What a builder keeps from build to build, and how boxes come in: fresh memory costs more than the build itself.
 
-use super::BuildError;
+use super::{BuildError, Effort};
 use super::grow::{Extent, Plot, Rule, Shed, grow};
 use super::lanes::{Box8, Item};
 use crate::geometry::Aabb;
@@ -28,17 +28,17 @@ impl Default for Yard {
 }
 
 impl Yard {
-    /// Builds serially by a rule.
+    /// Builds serially by a rule; returns what it did.
     pub(super) fn build<R: Rule>(
         &mut self,
         rule: &R,
         boxes: &[Aabb],
         bvh: &mut BinaryBvh,
-    ) -> Result<(), BuildError> {
+    ) -> Result<Effort, BuildError> {
         bvh.nodes.clear();
         make_room(&mut bvh.order, boxes.len(), 0);
         if boxes.is_empty() {
-            return Ok(());
+            return Ok(Effort::default());
         }
         for place in &mut self.items {
             make_room(place, boxes.len(), Item::new(&Box8::EMPTY, 0, 0));
@@ -46,9 +46,10 @@ impl Yard {
         let (extent, view) = load_all(boxes, &mut self.items[0])?;
         let [one, other] = &mut self.items;
         let plot = Plot { items: [one, other], order: &mut bvh.order, first: 0 };
-        grow(rule, plot, extent, 0, &mut bvh.nodes, &mut self.shed);
+        let mut effort = grow(rule, plot, extent, 0, &mut bvh.nodes, &mut self.shed);
         view.restore(bvh, boxes);
-        Ok(())
+        effort.loaded = boxes.len() as u64;
+        Ok(effort)
     }
 }
 
@@ -88,6 +89,20 @@ impl View {
         Self { limit, scale: (-power).exp2() }
     }
 
+    /// Looks at all boxes, at least one: the first bad one is told.
+    pub(super) fn look(boxes: &[Aabb]) -> Result<(Extent, Self), BuildError> {
+        let extent = each(boxes, 0, Self::PLAIN, |_, _| ())?;
+        let view = Self::of(&extent.bounds.aabb(), boxes);
+        let extent = if view == Self::PLAIN { extent } else { each(boxes, 0, view, |_, _| ())? };
+        Ok((extent, view))
+    }
+
+    /// A box in that range.
+    #[inline(always)]
+    pub(super) fn bring(&self, bounds: &Aabb) -> Box8 {
+        Box8::new(&if *self == Self::PLAIN { *bounds } else { self.apply(bounds) })
+    }
+
     fn apply(&self, bounds: &Aabb) -> Aabb {
         let bring = |at: Vec3| at.clamp(Vec3::splat(-self.limit), Vec3::splat(self.limit)) * self.scale;
         Aabb { min: bring(bounds.min), max: bring(bounds.max) }
@@ -101,25 +116,41 @@ impl View {
     }
 }
 
+/// Goes through some of the boxes, the first of them item `first`, and calls `keep` with each, in the range it needs; an
+/// error tells the first bad one.
+#[inline(always)]
+fn each(
+    boxes: &[Aabb],
+    first: usize,
+    view: View,
+    mut keep: impl FnMut(usize, &Box8),
+) -> Result<Extent, BuildError> {
+    let mut extent = Extent::EMPTY;
+    for (i, bounds) in boxes.iter().enumerate() {
+        // Also not where one is no number.
+        if !bounds.min.cmple(bounds.max).all() {
+            return Err(BuildError::NoBox { item: first + i, bounds: *bounds });
+        }
+        let bounds = view.bring(bounds);
+        keep(i, &bounds);
+        let middles = Box8::of_point(bounds.middles());
+        extent = extent.union(&Extent { bounds, middles });
+    }
+    Ok(extent)
+}
+
 /// Copies some of the boxes, the first of them item `first`; an error tells the first bad one.
+///
+/// # Panics
+/// If there are fewer `items` than boxes.
 pub(super) fn load(
     boxes: &[Aabb],
     first: usize,
     view: View,
     items: &mut [Item],
 ) -> Result<Extent, BuildError> {
-    let mut extent = Extent::EMPTY;
-    for (i, (bounds, item)) in boxes.iter().zip(items).enumerate() {
-        // Also not where one is no number.
-        if !bounds.min.cmple(bounds.max).all() {
-            return Err(BuildError::NoBox { item: first + i, bounds: *bounds });
-        }
-        let bounds = Box8::new(&if view == View::PLAIN { *bounds } else { view.apply(bounds) });
-        let middle = Box8::of_point(bounds.middles());
-        *item = Item::new(&bounds, (first + i) as u32, 1);
-        extent = extent.union(&Extent { bounds, middles: middle });
-    }
-    Ok(extent)
+    let items = &mut items[..boxes.len()];
+    each(boxes, first, view, |i, bounds| items[i] = Item::new(bounds, (first + i) as u32, 1))
 }
 
 /// Copies all boxes, at least one, in the range they need.

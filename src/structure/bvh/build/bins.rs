@@ -79,14 +79,18 @@ impl Grating {
     /// The bin of an item on an axis.
     #[inline(always)]
     pub(super) fn bin(&self, item: &Item, axis: usize) -> u32 {
-        self.bin_of(item.middle(axis), axis)
+        let bin = (item.middle(axis) - self.from[axis]) * self.scale[axis];
+        (bin as u32).min(self.bins as u32 - 1)
     }
 
-    /// The bin of a middle on an axis, given twice its size.
+    /// Where bins begin, how many there are for each unit of length, and the last.
+    ///
+    /// # Safety
+    /// The processor has the unit.
     #[inline(always)]
-    pub(super) fn bin_of(&self, middle: f32, axis: usize) -> u32 {
-        let bin = (middle - self.from[axis]) * self.scale[axis];
-        (bin as u32).min(self.bins as u32 - 1)
+    pub(super) unsafe fn lanes<L: Lanes>(&self) -> (L::Three, L::Three, i32) {
+        // SAFETY: the unit is there.
+        unsafe { (L::three(self.from), L::three(self.scale), self.bins as i32 - 1) }
     }
 
     /// Takes all axes out but the one of the greatest extent.
@@ -166,8 +170,7 @@ on_unit! {
 unsafe fn fill_with<L: Lanes>(items: &[Item], grating: &Grating, bins: &mut Bins) {
     // SAFETY: the unit is there; middles lie between the outermost ones, which makes bins of at most `MOST_BINS`.
     unsafe {
-        let (from, scale) = (L::three(grating.from), L::three(grating.scale));
-        let last = grating.bins as i32 - 1;
+        let (from, scale, last) = grating.lanes::<L>();
         for item in items {
             let bounds = L::load_item(item);
             // The outermost middle lies at the end of the last bin, not in it.

@@ -42,32 +42,43 @@ on_unit! {
 /// # Safety
 /// The processor has the unit.
 #[inline(always)]
-unsafe fn weigh_few_with<L: Lanes>(items: &[Item]) -> Parting {
-    // Of every set of items, told by its bits, the box and what it costs.
-    let mut bounds = [Box8::EMPTY; 1 << FEW];
-    let (mut weights, mut costs) = ([0; 1 << FEW], [0.0; 1 << FEW]);
-    let all = (1 << items.len().min(FEW)) - 1;
+pub(super) unsafe fn weigh_few_with<L: Lanes>(items: &[Item]) -> Parting {
+    let mut best = Parting { left: 0, bounds: [Box8::EMPTY; 2], cost: f32::INFINITY };
     // SAFETY: the unit is there.
     unsafe {
-        for (i, item) in items.iter().take(FEW).enumerate() {
-            let (one, weight) = (L::load_item(item), item.weight());
-            for set in 0..1 << i {
-                let with = set | 1 << i;
-                let around = L::load(&bounds[set]).union(one);
-                around.store(&mut bounds[with]);
-                weights[with] = weights[set] + weight;
-                costs[with] = around.half_area() * weights[with] as f32;
+        let item = |i: usize| (L::load_item(&items[i]), items[i].weight());
+        let join = |one: (L, u32), other: (L, u32)| (one.0.union(other.0), one.1 + other.1);
+        let mut weigh = |left: usize, sides: [(L, u32); 2]| {
+            let [one, other] = sides.map(|(bounds, weight)| bounds.half_area() * weight as f32);
+            if one + other < best.cost {
+                (best.cost, best.left) = (one + other, left);
+                sides.into_iter().zip(&mut best.bounds).for_each(|((side, _), bounds)| side.store(bounds));
             }
+        };
+        let (a, b) = (item(0), item(1));
+        if items.len() == 2 {
+            weigh(0b1, [a, b]);
+            return best;
         }
-    }
-    let (mut cost, mut left) = (costs[1] + costs[all - 1], 1);
-    for set in (3..all).step_by(2) {
-        let both = costs[set] + costs[all - set];
-        if both < cost {
-            (cost, left) = (both, set);
+        let c = item(2);
+        let (ab, ac, bc) = (join(a, b), join(a, c), join(b, c));
+        if items.len() == 3 {
+            weigh(0b1, [a, bc]);
+            weigh(0b11, [ab, c]);
+            weigh(0b101, [ac, b]);
+            return best;
         }
+        let d = item(3);
+        let (ad, bd, cd) = (join(a, d), join(b, d), join(c, d));
+        weigh(0b1, [a, join(b, cd)]);
+        weigh(0b11, [ab, cd]);
+        weigh(0b101, [ac, bd]);
+        weigh(0b111, [join(ab, c), d]);
+        weigh(0b1001, [ad, bc]);
+        weigh(0b1011, [join(ab, d), c]);
+        weigh(0b1101, [join(ac, d), b]);
     }
-    Parting { left, bounds: [bounds[left], bounds[all - left]], cost }
+    best
 }
 
 #[cfg(test)]

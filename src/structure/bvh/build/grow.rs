@@ -23,6 +23,7 @@ pub(super) struct Extent {
 impl Extent {
     pub(super) const EMPTY: Self = Self { bounds: Box8::EMPTY, middles: Box8::EMPTY };
 
+    #[inline(always)]
     pub(super) fn union(&self, other: &Self) -> Self {
         Self { bounds: self.bounds.union(&other.bounds), middles: self.middles.union(&other.middles) }
     }

@@ -107,7 +107,7 @@ impl Default for Settings {
             bins: 16,
             most_in_leaf: 8,
             median_leaf: 2,
-            cluster: 16,
+            cluster: 8,
             step_cost: 1.0,
             item_cost: 1.0,
             overlap: 1e-5,

@@ -9,12 +9,12 @@
 //! curve alone makes a hierarchy that costs rays more than the few cuts by cost save.
 
 use super::binned_sah::SahRule;
-use super::bins::around;
-use super::few::{FEW, weigh_few};
+use super::few::{FEW, weigh_few_with};
 use super::grow::{Extent, Plot, Rule, budding, grow};
 use super::lanes::{Box8, Item, Lanes, on_unit};
 use super::yard::{View, Yard, make_room};
-use super::{BuildError, Input, Settings, curve};
+use super::{BuildError, Input, MOST_IN_CLUSTER, Settings, curve};
+use crate::geometry::Aabb;
 use crate::structure::bvh::{BinaryBvh, BinaryNode};
 
 pub(super) const SUMMARY: &str = "clusters along a Z-order curve, the heuristic above them (after HLBVH)";
@@ -60,13 +60,11 @@ impl Morton {
         }
         let nothing = Item::new(&Box8::EMPTY, 0, 0);
         make_room(&mut self.items, count, nothing);
-        let (extent, view) = View::look(input.boxes)?;
-        curve::sort(input.boxes, &view, &extent.middles, &mut self.codes);
+        let unit = self.above.unit;
+        let (extent, view) = View::look(unit, input.boxes)?;
+        curve::sort(unit, input.boxes, &view, &extent.middles, &mut self.codes);
         let codes = &self.codes[0];
-        for (item, code) in self.items.iter_mut().zip(codes) {
-            let number = curve::item(*code);
-            *item = Item::new(&view.bring(&input.boxes[number]), number as u32, 1);
-        }
+        gather(unit, input.boxes, &view, codes, &mut self.items);
         self.starts.clear();
         curve::clusters(codes, self.cluster, &mut self.starts);
         self.grow_above();
@@ -82,14 +80,7 @@ impl Morton {
         for place in [&mut *clusters, &mut *room] {
             make_room(place, count, Item::new(&Box8::EMPTY, 0, 0));
         }
-        let mut extent = Extent::EMPTY;
-        for (i, ends) in self.starts.windows(2).enumerate() {
-            let items = &self.items[ends[0] as usize..ends[1] as usize];
-            let bounds = around(self.above.unit, items)[0];
-            let middles = Box8::of_point(bounds.middles());
-            clusters[i] = Item::new(&bounds, i as u32, items.len() as u32);
-            extent = extent.union(&Extent { bounds, middles });
-        }
+        let extent = wrap(self.above.unit, &self.items, &self.starts, clusters);
         make_room(&mut self.top.order, count, 0);
         let plot = Plot { items: [clusters, room], order: &mut self.top.order, first: 0 };
         grow(&self.above, plot, extent, 0, &mut self.top.nodes, &mut self.clusters.shed);
@@ -115,9 +106,9 @@ impl Morton {
             let cluster = self.top.order[node.first as usize] as usize;
             let items = &mut self.items[self.starts[cluster] as usize..self.starts[cluster + 1] as usize];
             self.room.resize(items.len().max(self.room.len()), (Box8::EMPTY, 0.0));
-            let bounds = Box8::new(&node.bounds);
             let end = filled + items.len();
-            cut(&self.within, items, &bounds, filled, to, nodes, &mut self.room);
+            nodes[to].count = 0;
+            cut(self.within.unit, &self.within, items, filled, to, nodes, &mut self.room);
             for (place, item) in order[filled..end].iter_mut().zip(items) {
                 *place = item.number();
             }
@@ -126,49 +117,125 @@ impl Morton {
     }
 }
 
-/// Cuts a run of the curve where it is cheapest, again and again; a few items are parted whichever way is best. Its node,
-/// which has its box, is there; the items begin at `first` of the order.
-fn cut(
-    rule: &SahRule,
-    items: &mut [Item],
-    bounds: &Box8,
-    first: usize,
-    node: usize,
-    nodes: &mut Vec<BinaryNode>,
-    room: &mut [(Box8, f32)],
-) {
-    let count = items.len();
-    let (middle, sides, cost) = match count {
-        1 => (0, [Box8::EMPTY; 2], f32::INFINITY),
-        2..=FEW => {
-            let parting = weigh_few(rule.unit, items);
-            let mut before = [items[0]; FEW];
-            before[..count].copy_from_slice(items);
-            parting.part(&before[..count], items);
-            (parting.count(), parting.bounds, parting.cost)
-        }
-        _ => sweep(rule.unit, items, room),
-    };
-    if count == 1 || rule.is_leaf(count, bounds, cost) {
-        nodes[node].first = first as u32;
-        nodes[node].count = count as u32;
-        return;
+on_unit! {
+    /// Copies boxes in the order of the curve.
+    fn gather(boxes: &[Aabb], view: &View, codes: &[u64], items: &mut [Item]) -> () = gather_with
+}
+
+/// # Safety
+/// The processor has the unit.
+#[inline(always)]
+unsafe fn gather_with<L: Lanes>(boxes: &[Aabb], view: &View, codes: &[u64], items: &mut [Item]) {
+    let mut bounds = Box8::EMPTY;
+    for (item, code) in items.iter_mut().zip(codes) {
+        let number = curve::item(*code);
+        // SAFETY: the unit is there.
+        unsafe { view.load::<L>(&boxes[number]).store(&mut bounds) };
+        *item = Item::new(&bounds, number as u32, 1);
     }
-    let (left, rest) = items.split_at_mut(middle);
-    let pair = nodes.len();
-    nodes[node].first = pair as u32;
-    nodes[node].count = 0;
-    nodes.extend(sides.each_ref().map(budding));
-    cut(rule, left, &sides[0], first, pair, nodes, room);
-    cut(rule, rest, &sides[1], first + middle, pair + 1, nodes, room);
 }
 
 on_unit! {
-    /// Where cutting a run of at least two items costs least: how many items are left of it, the boxes of both sides, and
-    /// half their areas, each times its items. Room is as long as the run at least.
-    fn sweep(items: &[Item], room: &mut [(Box8, f32)]) -> (usize, [Box8; 2], f32) = sweep_with
+    /// Makes an item of each cluster; returns their extent.
+    fn wrap(items: &[Item], starts: &[u32], clusters: &mut [Item]) -> Extent = wrap_with
 }
 
+/// # Safety
+/// The processor has the unit.
+#[inline(always)]
+unsafe fn wrap_with<L: Lanes>(items: &[Item], starts: &[u32], clusters: &mut [Item]) -> Extent {
+    let mut extent = Extent::EMPTY;
+    let mut bounds = Box8::EMPTY;
+    // SAFETY: the unit is there.
+    unsafe {
+        let (mut all, mut middles) = (L::load(&extent.bounds), L::load(&extent.middles));
+        for (number, (ends, cluster)) in starts.windows(2).zip(clusters).enumerate() {
+            let mut around = L::load(&Box8::EMPTY);
+            let items = &items[ends[0] as usize..ends[1] as usize];
+            for item in items {
+                around = around.union(L::load_item(item));
+            }
+            around.store(&mut bounds);
+            *cluster = Item::new(&bounds, number as u32, items.len() as u32);
+            all = all.union(around);
+            middles = middles.union(L::of_point(around.middle()));
+        }
+        all.store(&mut extent.bounds);
+        middles.store(&mut extent.middles);
+    }
+    extent
+}
+
+on_unit! {
+    /// Cuts a run of the curve where it is cheapest, again and again; a few items are parted whichever way is best. Its
+    /// node, `at`, which has its box, is there; the items begin at `first` of the order. Room is as long as the run.
+    fn cut(
+        rule: &SahRule,
+        items: &mut [Item],
+        first: usize,
+        at: usize,
+        nodes: &mut Vec<BinaryNode>,
+        room: &mut [(Box8, f32)],
+    ) -> () = cut_with
+}
+
+/// # Safety
+/// The processor has the unit.
+#[inline(always)]
+unsafe fn cut_with<L: Lanes>(
+    rule: &SahRule,
+    items: &mut [Item],
+    first: usize,
+    at: usize,
+    nodes: &mut Vec<BinaryNode>,
+    room: &mut [(Box8, f32)],
+) {
+    // Runs of which only the second half is left to do: no more than there are items.
+    let mut open = [(0, 0, 0); MOST_IN_CLUSTER];
+    let mut waiting = 0;
+    let (mut node, mut start, mut end) = (at, 0, items.len());
+    loop {
+        let run = &mut items[start..end];
+        let count = run.len();
+        let parting = match count {
+            1 => None,
+            2..=FEW => {
+                // SAFETY: the unit is there.
+                let parting = unsafe { weigh_few_with::<L>(run) };
+                let mut before = [run[0]; FEW];
+                before[..count].copy_from_slice(run);
+                parting.part(&before[..count], run);
+                Some((parting.count(), parting.bounds, parting.cost))
+            }
+            // SAFETY: the unit is there.
+            _ => Some(unsafe { sweep_with::<L>(run, room) }),
+        };
+        let bounds = Box8::new(&nodes[node].bounds);
+        match parting.filter(|(.., cost)| !rule.is_leaf(count, &bounds, *cost)) {
+            Some((left, sides, _)) => {
+                let pair = nodes.len();
+                nodes[node].first = pair as u32;
+                nodes.extend(sides.each_ref().map(budding));
+                open[waiting] = (pair + 1, start + left, end);
+                waiting += 1;
+                (node, end) = (pair, start + left);
+            }
+            None => {
+                nodes[node].first = (first + start) as u32;
+                nodes[node].count = count as u32;
+                if waiting == 0 {
+                    return;
+                }
+                waiting -= 1;
+                (node, start, end) = open[waiting];
+            }
+        }
+    }
+}
+
+/// Where cutting a run of at least two items costs least: how many items are left of it, the boxes of both sides, and
+/// half their areas, each times its items. Room is as long as the run at least.
+///
 /// # Safety
 /// The processor has the unit.
 #[inline(always)]

@@ -2,7 +2,7 @@
 
 use super::{BuildError, Effort};
 use super::grow::{Extent, Plot, Rule, Shed, grow};
-use super::lanes::{Box8, Item};
+use super::lanes::{Box8, Item, Lanes, Unit, on_unit};
 use crate::geometry::Aabb;
 use crate::structure::bvh::{BinaryBvh, refit};
 use glam::Vec3;
@@ -90,17 +90,28 @@ impl View {
     }
 
     /// Looks at all boxes, at least one: the first bad one is told.
-    pub(super) fn look(boxes: &[Aabb]) -> Result<(Extent, Self), BuildError> {
-        let extent = each(boxes, 0, Self::PLAIN, |_, _| ())?;
+    pub(super) fn look(unit: Unit, boxes: &[Aabb]) -> Result<(Extent, Self), BuildError> {
+        let bad = |item: usize| BuildError::NoBox { item, bounds: boxes[item] };
+        let extent = survey(unit, boxes, Self::PLAIN).map_err(bad)?;
         let view = Self::of(&extent.bounds.aabb(), boxes);
-        let extent = if view == Self::PLAIN { extent } else { each(boxes, 0, view, |_, _| ())? };
+        let extent = if view == Self::PLAIN { extent } else { survey(unit, boxes, view).map_err(bad)? };
         Ok((extent, view))
     }
 
     /// A box in that range.
     #[inline(always)]
-    pub(super) fn bring(&self, bounds: &Aabb) -> Box8 {
+    fn bring(&self, bounds: &Aabb) -> Box8 {
         Box8::new(&if *self == Self::PLAIN { *bounds } else { self.apply(bounds) })
+    }
+
+    /// The same in registers.
+    ///
+    /// # Safety
+    /// The processor has the unit.
+    #[inline(always)]
+    pub(super) unsafe fn load<L: Lanes>(&self, bounds: &Aabb) -> L {
+        // SAFETY: the unit is there.
+        unsafe { if *self == Self::PLAIN { L::of(bounds) } else { L::of(&self.apply(bounds)) } }
     }
 
     fn apply(&self, bounds: &Aabb) -> Aabb {
@@ -116,27 +127,36 @@ impl View {
     }
 }
 
-/// Goes through some of the boxes, the first of them item `first`, and calls `keep` with each, in the range it needs; an
-/// error tells the first bad one.
+on_unit! {
+    /// The extent of boxes, or the number of the first bad one.
+    fn survey(boxes: &[Aabb], view: View) -> Result<Extent, usize> = survey_with
+}
+
+/// # Safety
+/// The processor has the unit.
 #[inline(always)]
-fn each(
-    boxes: &[Aabb],
-    first: usize,
-    view: View,
-    mut keep: impl FnMut(usize, &Box8),
-) -> Result<Extent, BuildError> {
+unsafe fn survey_with<L: Lanes>(boxes: &[Aabb], view: View) -> Result<Extent, usize> {
     let mut extent = Extent::EMPTY;
-    for (i, bounds) in boxes.iter().enumerate() {
-        // Also not where one is no number.
-        if !bounds.min.cmple(bounds.max).all() {
-            return Err(BuildError::NoBox { item: first + i, bounds: *bounds });
+    // SAFETY: the unit is there.
+    unsafe {
+        let (mut all, mut middles) = (L::load(&extent.bounds), L::load(&extent.middles));
+        for (i, bounds) in boxes.iter().enumerate() {
+            if !holds_a_point(bounds) {
+                return Err(i);
+            }
+            let bounds = view.load::<L>(bounds);
+            all = all.union(bounds);
+            middles = middles.union(L::of_point(bounds.middle()));
         }
-        let bounds = view.bring(bounds);
-        keep(i, &bounds);
-        let middles = Box8::of_point(bounds.middles());
-        extent = extent.union(&Extent { bounds, middles });
+        all.store(&mut extent.bounds);
+        middles.store(&mut extent.middles);
     }
     Ok(extent)
+}
+
+/// Also not where one of its numbers is none.
+fn holds_a_point(bounds: &Aabb) -> bool {
+    bounds.min.cmple(bounds.max).all()
 }
 
 /// Copies some of the boxes, the first of them item `first`; an error tells the first bad one.
@@ -149,8 +169,17 @@ pub(super) fn load(
     view: View,
     items: &mut [Item],
 ) -> Result<Extent, BuildError> {
-    let items = &mut items[..boxes.len()];
-    each(boxes, first, view, |i, bounds| items[i] = Item::new(bounds, (first + i) as u32, 1))
+    let mut extent = Extent::EMPTY;
+    for (i, (bounds, item)) in boxes.iter().zip(&mut items[..boxes.len()]).enumerate() {
+        if !holds_a_point(bounds) {
+            return Err(BuildError::NoBox { item: first + i, bounds: *bounds });
+        }
+        let bounds = view.bring(bounds);
+        *item = Item::new(&bounds, (first + i) as u32, 1);
+        let middles = Box8::of_point(bounds.middles());
+        extent = extent.union(&Extent { bounds, middles });
+    }
+    Ok(extent)
 }
 
 /// Copies all boxes, at least one, in the range they need.

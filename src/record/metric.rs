@@ -247,6 +247,7 @@ pub const METRICS: &[Metric] = {
             .gives_up(AccuracyKind::Structure),
         declare("structure_time", "ns", Lower, "Median time of building the binary hierarchy over the triangles."),
         declare("structure_rate", "Mtriangles/s", Higher, "Millions of triangles built into it a second."),
+        declare("refit_rate", "Mtriangles/s", Higher, "Millions of triangles a second whose hierarchy was given new boxes."),
         declare("collapse_time", "ns", Lower, "Median time of making the wide hierarchy of the binary one."),
         declare(
             "hierarchy_time",

@@ -1,6 +1,7 @@
 //! One binary for all integration tests: oracles, goldens in virtual time, invariants, command line, house rules.
 
 mod advise;
+mod build;
 mod collide;
 mod command_line;
 mod compare;

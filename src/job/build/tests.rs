@@ -3,8 +3,10 @@ use crate::geometry::Aabb;
 use crate::machine::Threads;
 use crate::machine::simulated::{Model, Simulated};
 use crate::scheme::tiles::SCHEMES;
-use crate::structure::bvh::build::phased::{Alone, Way};
-use crate::structure::bvh::build::{Builder, Settings};
+use crate::structure::bvh::BinaryBvh;
+use crate::structure::bvh::build::phased::{Alone, Phased, Way};
+use crate::structure::bvh::build::{Builder, Input, Settings};
+use crate::structure::bvh::refit::Refitted;
 use glam::Vec3;
 use std::sync::Mutex;
 
@@ -26,12 +28,13 @@ fn same_everywhere<M: Machine>(machine: &M, processors: usize) {
             let processors = if about.name == "serial" { 1 } else { processors };
             let mut scheme = Scheme::new(about.name, machine, processors, Default::default()).unwrap();
             let mut bvh = BinaryBvh::default();
-            build(&mut builder, &Input::of(&boxes), &mut bvh, machine, &mut scheme, processors).unwrap();
+            let costs = Model::named("e4000").map(|model| Costs::measured_on(&model)).unwrap();
+            let mut crew = Crew::new(machine, &mut scheme, processors).charging(costs);
+            builder.build(&Input::of(&boxes), &mut bvh, &mut crew).unwrap();
             assert_eq!(bvh, expected, "{name} by {}", about.name);
             let mut bad = boxes.clone();
             bad[12_345].max.x = f32::NAN;
-            let error = build(&mut builder, &Input::of(&bad), &mut bvh, machine, &mut scheme, processors);
-            let error = error.unwrap_err().to_string();
+            let error = builder.build(&Input::of(&bad), &mut bvh, &mut crew).unwrap_err().to_string();
             assert!(error.contains("12345"), "{error}");
         }
     }
@@ -47,10 +50,13 @@ fn refitted_everywhere<M: Machine>(machine: &M, processors: usize) {
             .unwrap();
         let mut expected = bvh.clone();
         crate::structure::bvh::refit::refit(&mut expected, &after);
-        let job = Refit::new(machine, processors, &bvh);
+        let job = Refit::new(machine, processors, SUBTREES, &bvh);
         for _ in 0..3 {
             let renewed = Mutex::new(vec![0; 50]);
-            let renew = |piece: usize| renewed.lock().unwrap()[piece] += 1;
+            let renew = |piece: usize| {
+                renewed.lock().unwrap()[piece] += 1;
+                1
+            };
             job.run(machine, &mut bvh, |item| after[item as usize], 50, renew).unwrap();
             assert_eq!(bvh, expected, "{count} items");
             assert_eq!(renewed.into_inner().unwrap(), [1; 50], "each piece once");
@@ -78,4 +84,47 @@ fn refitting_is_the_same_on_every_machine() {
         refitted_everywhere(&threads, processors);
     }
     refitted_everywhere(&Simulated::new(Model::named("e4000").unwrap()), 7);
+}
+
+/// Ticks that building takes so many simulated processors; and what it charges one that builds in one piece.
+fn ticks(way: Way, boxes: &[Aabb], processors: usize) -> (u64, u64) {
+    let model = Model::named("opteron16").unwrap();
+    let costs = Costs::measured_on(&model);
+    let machine = Simulated::new(model);
+    let mut scheme = Scheme::new("fixed_tiles", &machine, processors, Default::default()).unwrap();
+    let mut builder = Phased::new(way, &Settings::default()).unwrap();
+    let mut bvh = BinaryBvh::default();
+    let effort = builder.build_alone(&Input::of(boxes), &mut bvh).unwrap();
+    let mut crew = Crew::new(&machine, &mut scheme, processors).charging(costs);
+    builder.build(&Input::of(boxes), &mut bvh, &mut crew).unwrap();
+    (machine.now(), costs.of_building(&effort))
+}
+
+#[test]
+fn what_building_does_is_charged() {
+    let boxes = boxes(50_000, 1_299_709);
+    for (name, way) in Way::ALL {
+        let ([one, whole], [eight, _]) = (<[u64; 2]>::from(ticks(way, &boxes, 1)), ticks(way, &boxes, 8).into());
+        assert!(one > whole / 2 && one < whole * 2, "{name}: {one} ticks in phases, {whole} in one piece");
+        assert!(eight < one / 2 && eight > one / 8, "{name}: {eight} ticks by eight, {one} by one");
+    }
+}
+
+#[test]
+fn what_refitting_does_is_charged() {
+    let boxes = boxes(50_000, 3);
+    let model = Model::named("opteron16").unwrap();
+    let costs = Costs::measured_on(&model);
+    let mut bvh = BinaryBvh::default();
+    Builder::new("binned_sah", &Settings::default()).unwrap().build(&Input::of(&boxes), &mut bvh).unwrap();
+    let mut ticks = |processors| {
+        let machine = Simulated::new(model.clone());
+        let job = Refit::new(&machine, processors, SUBTREES, &bvh).charging(costs);
+        job.run(&machine, &mut bvh, |item| boxes[item as usize], 50, |_| 1000).unwrap();
+        machine.now()
+    };
+    let (one, eight) = (ticks(1), ticks(8));
+    let done = Refitted { nodes: 50_000, items: 50_000 };
+    assert!(one > costs.of_refitting(&done) + costs.of_renewing(50_000), "{one} ticks");
+    assert!(eight < one / 4 && eight > one / 8, "{eight} ticks by eight, {one} by one");
 }

@@ -122,6 +122,7 @@ const PRESETS: &[(&str, &str)] = &[
     ("pentium3x2", include_str!("presets/pentium3x2.toml")),
     ("origin2000", include_str!("presets/origin2000.toml")),
     ("superdome1024", include_str!("presets/superdome1024.toml")),
+    ("opteron16", include_str!("presets/opteron16.toml")),
     ("host", include_str!("presets/host.toml")),
 ];
 

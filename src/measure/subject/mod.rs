@@ -1,10 +1,12 @@
 //! What is measured: the way from a cell to the job, scheme and machine it names.
 
+mod build;
 mod collide;
 mod cull;
 mod cull_boxes;
 mod draw;
 mod rays;
+mod rolled;
 mod settings;
 mod staging;
 mod tiles;
@@ -107,6 +109,7 @@ pub struct Known {
 /// The jobs, by word: how each is made ready. The list is the table of contents.
 type OpenJob = fn(&Cell, &Options, &mut SubjectCache) -> Result<Box<dyn Subject>, MeasureError>;
 const JOBS: &[(&str, OpenJob)] = &[
+    ("build", build::open),
     ("collide", collide::open),
     ("cull", cull::open),
     ("cull_boxes", cull_boxes::open),
@@ -117,7 +120,7 @@ const JOBS: &[(&str, OpenJob)] = &[
     ("tree", tree::open),
 ];
 /// The jobs made of independent pieces; the others descend a hierarchy.
-const IN_PIECES: &[&str] = &["cull_boxes", "rays", "tiles", "trace"];
+const IN_PIECES: &[&str] = &["build", "cull_boxes", "rays", "tiles", "trace"];
 
 /// All schemes, whatever their shape.
 fn schemes() -> impl Iterator<Item = &'static About> {

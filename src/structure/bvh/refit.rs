@@ -17,12 +17,24 @@ pub fn refit_with(bvh: &mut BinaryBvh, bounds: impl Fn(u32) -> Aabb) {
     below(&mut bvh.nodes, 0, &bvh.order, &bounds);
 }
 
-/// Refits nodes of which the first is number `first`; all that is below any of them is among them.
-fn below(nodes: &mut [BinaryNode], first: usize, order: &[u32], bounds: &impl Fn(u32) -> Aabb) {
+/// What was given new boxes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Refitted {
+    /// Nodes.
+    pub nodes: usize,
+    /// Items of theirs whose boxes were asked for.
+    pub items: usize,
+}
+
+/// Refits nodes of which the first is number `first`; all that is below any of them is among them. Returns how many items
+/// they have.
+fn below(nodes: &mut [BinaryNode], first: usize, order: &[u32], bounds: &impl Fn(u32) -> Aabb) -> usize {
+    let mut asked = 0;
     // Children come after their parent.
     for i in (0..nodes.len()).rev() {
         let node = nodes[i];
         nodes[i].bounds = if node.is_leaf() {
+            asked += node.count as usize;
             let items = order[node.items()].iter();
             items.fold(Aabb::EMPTY, |around, item| around.union(bounds(*item)))
         } else {
@@ -30,6 +42,7 @@ fn below(nodes: &mut [BinaryNode], first: usize, order: &[u32], bounds: &impl Fn
             left.union(right)
         };
     }
+    asked
 }
 
 /// A hierarchy's subtrees at a level, none of which is much larger than the others, and the nodes above them.
@@ -110,21 +123,22 @@ impl Cut {
 }
 
 impl Part<'_> {
-    /// Refits the nodes below the root; returns the root's box.
-    pub fn refit(self, bounds: &impl Fn(u32) -> Aabb) -> Aabb {
+    /// Refits the nodes below the root; returns the root's box, and what was refitted.
+    pub fn refit(self, bounds: &impl Fn(u32) -> Aabb) -> (Aabb, Refitted) {
         if self.root.is_leaf() {
             let mut alone = [self.root];
-            below(&mut alone, 0, self.order, bounds);
-            return alone[0].bounds;
+            let items = below(&mut alone, 0, self.order, bounds);
+            return (alone[0].bounds, Refitted { nodes: 0, items });
         }
-        below(self.nodes, self.root.first as usize, self.order, bounds);
-        self.nodes[0].bounds.union(self.nodes[1].bounds)
+        let items = below(self.nodes, self.root.first as usize, self.order, bounds);
+        let root = self.nodes[0].bounds.union(self.nodes[1].bounds);
+        (root, Refitted { nodes: self.nodes.len(), items })
     }
 }
 
 impl Above<'_> {
-    /// Refits the nodes above, given the box of each subtree's root.
-    pub fn refit(mut self, roots: impl Fn(usize) -> Aabb) {
+    /// Refits the nodes above, given the box of each subtree's root; returns what was refitted.
+    pub fn refit(mut self, roots: impl Fn(usize) -> Aabb) -> Refitted {
         for i in (0..self.nodes.len()).rev() {
             let bounds = match self.nodes[i].1 {
                 Some(subtree) => roots(subtree),
@@ -138,6 +152,7 @@ impl Above<'_> {
             };
             self.nodes[i].2.bounds = bounds;
         }
+        Refitted { nodes: self.nodes.len(), items: 0 }
     }
 }
 
@@ -176,7 +191,7 @@ mod tests {
                 let (parts, above) = cut.part(&mut parted);
                 assert!(parts.len() >= wanted.min(serial.statistics().leaves));
                 let roots: Vec<Aabb> =
-                    parts.into_iter().map(|part| part.refit(&|item| after[item as usize])).collect();
+                    parts.into_iter().map(|part| part.refit(&|item| after[item as usize]).0).collect();
                 above.refit(|subtree| roots[subtree]);
                 assert_eq!(parted, serial, "{count} items, {wanted} subtrees");
             }

@@ -5,6 +5,7 @@
 //! (`refit`, `rebuild`); `job.volume`, `job.leaf` and `job.reach` as of two bodies. On threads only: a frame's tree is
 //! read where it is, not copied into a simulated memory.
 
+use super::super::rolled::{Surface, rolled, turns};
 use super::super::settings::{JobSettings, of_scheme};
 use super::kinds::{KINDS, Kind};
 use super::{
@@ -17,18 +18,11 @@ use crate::record::THREADS;
 use crate::scheme::tree::Scheme;
 use crate::structure::VolumeTree;
 use crate::structure::volume_tree::in_world;
-use glam::{DVec3, Vec3};
-use std::f64::consts::TAU;
+use glam::Vec3;
 use std::rc::Rc;
 
 /// Triangles in the leaves of the trees that answers are held against.
 const LEAF: usize = 4;
-/// Below this a turn is none: the body's roll would be wider than f64 can bend it about.
-const LEAST: f64 = 1e-6;
-
-/// Corners, in metres, and triangles.
-type Surface = (Vec<Vec3>, Vec<[u32; 3]>);
-
 /// What is asked about a body that bends.
 #[derive(Clone, Copy)]
 pub(super) struct Asked {
@@ -75,23 +69,6 @@ pub(super) fn open(
     (asked.kind.bend)(cell, asked, options, team)
 }
 
-/// The corners of a body rolled up about an axis along z, `turns` times from end to end along x; what was in the middle
-/// along y keeps its length.
-pub(super) fn rolled(flat: &[Vec3], turns: f64) -> Vec<Vec3> {
-    let bounds = crate::geometry::Aabb::of_points(flat.iter().copied());
-    let (low, length) = (f64::from(bounds.min.x), f64::from(bounds.size().x));
-    if turns < LEAST || length == 0.0 {
-        return flat.to_vec();
-    }
-    let (middle, radius) = (f64::from(bounds.centre().y), length / (TAU * turns));
-    let place = |point: &Vec3| {
-        let DVec3 { x, y, z } = point.as_dvec3();
-        let ((sin, cos), arm) = (((x - low) / radius).sin_cos(), radius - (y - middle));
-        DVec3::new(low + arm * sin, middle + radius - arm * cos, z).as_vec3()
-    };
-    flat.iter().map(place).collect()
-}
-
 /// What `open` of [`Kind`] is of one body.
 pub(super) fn with_volume<V: Overlap>(
     cell: &Cell,
@@ -104,8 +81,7 @@ pub(super) fn with_volume<V: Overlap>(
     if flat.1.is_empty() {
         return Err(MeasureError::Failed(format!("scene `{}` has no triangles", cell.scene)));
     }
-    let last = (options.frames as f64 - 1.0).max(1.0);
-    let turns = (0..options.frames).map(|frame| asked.turns * f64::from(frame) / last).collect();
+    let turns = turns(asked.turns, options.frames);
     let scheme = Scheme::new(&cell.scheme, &*team, cell.processors as usize, of_scheme(cell))
         .map_err(|error| MeasureError::Setting(error.to_string()))?;
     let tree = tree::<V>(&flat.0, &flat, asked.leaf)?;

@@ -5,6 +5,7 @@
 //! fewer bins: more could not tell them apart, and most nodes are small.
 
 use super::bins::{Bins, Grating, best, fill};
+use super::few::{FEW, weigh_few};
 use super::grow::{Cut, Extent, Rule};
 use super::lanes::{Box8, Item, Unit};
 use super::yard::Yard;
@@ -25,7 +26,8 @@ impl BinnedSah {
     }
 
     pub(super) fn build(&mut self, input: &Input<'_>, bvh: &mut BinaryBvh) -> Result<(), BuildError> {
-        self.yard.build(&self.rule, input.boxes, bvh)
+        self.yard.build(&self.rule, input.boxes, bvh)?;
+        Ok(())
     }
 }
 
@@ -47,22 +49,20 @@ impl SahRule {
 
     /// The bins a node of so many items gets.
     pub(super) fn grating(&self, middles: &Box8, items: usize) -> Grating {
-        Grating::new(middles, self.bins.min(2 + items))
+        Grating::new(middles, self.bins(items))
     }
 
     /// What becomes of a node whose bins are full.
     pub(super) fn weigh(&self, bins: &Bins, grating: &Grating, items: usize, bounds: &Box8) -> Cut {
         let Some(split) = best(self.unit, bins, grating) else { return Cut::Halves };
-        if items <= self.most_in_leaf && !self.pays(items, bounds, split.cost) {
-            return Cut::Leaf;
-        }
-        Cut::Plane(split)
+        if self.is_leaf(items, bounds, split.cost) { Cut::Leaf } else { Cut::Plane(split) }
     }
 
-    /// Whether two sides of a cost are cheaper than a leaf.
-    pub(super) fn pays(&self, items: usize, bounds: &Box8, sides: f32) -> bool {
+    /// Whether a leaf is allowed, and no dearer than two sides of a cost.
+    pub(super) fn is_leaf(&self, items: usize, bounds: &Box8, sides: f32) -> bool {
         let area = bounds.half_area();
-        self.step_cost * area + self.item_cost * sides < self.item_cost * area * items as f32
+        let pays = self.step_cost * area + self.item_cost * sides < self.item_cost * area * items as f32;
+        items <= self.most_in_leaf && !pays
     }
 }
 
@@ -75,7 +75,18 @@ impl Rule for SahRule {
         self.most_in_leaf
     }
 
+    fn bins(&self, items: usize) -> usize {
+        if items > FEW { self.bins.min(2 + items) } else { 0 }
+    }
+
     fn cut(&self, items: &[Item], extent: &Extent, bins: &mut Bins) -> Cut {
+        if items.len() <= FEW {
+            let parting = weigh_few(self.unit, items);
+            return match self.is_leaf(items.len(), &extent.bounds, parting.cost) {
+                true => Cut::Leaf,
+                false => Cut::Few(parting),
+            };
+        }
         let grating = self.grating(&extent.middles, items.len());
         if grating.is_point() {
             return Cut::Halves;

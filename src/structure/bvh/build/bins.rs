@@ -66,6 +66,11 @@ impl Grating {
         Self { from: [0.0; 3], scale: [1.0; 3], bins }
     }
 
+    /// Bins on each axis.
+    pub(super) fn bins(&self) -> usize {
+        self.bins
+    }
+
     /// Whether all middles are in one place.
     pub(super) fn is_point(&self) -> bool {
         self.scale == [0.0; 3]
@@ -76,6 +81,16 @@ impl Grating {
     pub(super) fn bin(&self, item: &Item, axis: usize) -> u32 {
         let bin = (item.middle(axis) - self.from[axis]) * self.scale[axis];
         (bin as u32).min(self.bins as u32 - 1)
+    }
+
+    /// Where bins begin, how many there are for each unit of length, and the last.
+    ///
+    /// # Safety
+    /// The processor has the unit.
+    #[inline(always)]
+    pub(super) unsafe fn lanes<L: Lanes>(&self) -> (L::Three, L::Three, i32) {
+        // SAFETY: the unit is there.
+        unsafe { (L::three(self.from), L::three(self.scale), self.bins as i32 - 1) }
     }
 
     /// Takes all axes out but the one of the greatest extent.
@@ -155,8 +170,7 @@ on_unit! {
 unsafe fn fill_with<L: Lanes>(items: &[Item], grating: &Grating, bins: &mut Bins) {
     // SAFETY: the unit is there; middles lie between the outermost ones, which makes bins of at most `MOST_BINS`.
     unsafe {
-        let (from, scale) = (L::three(grating.from), L::three(grating.scale));
-        let last = grating.bins as i32 - 1;
+        let (from, scale, last) = grating.lanes::<L>();
         for item in items {
             let bounds = L::load_item(item);
             // The outermost middle lies at the end of the last bin, not in it.

@@ -1,13 +1,17 @@
 //! Places on a Z-order curve through space (Morton 1966), and items sorted by them.
 
 use super::bins::Grating;
-use super::lanes::{Box8, Item};
+use super::lanes::{Box8, Lanes, Unit, on_unit};
+use super::yard::{View, make_room};
+use crate::geometry::Aabb;
 
-/// Bits of a place on each axis.
-const AXIS_BITS: u32 = 11;
+/// Bits of a place on each axis: as many as three numbers of 32 bits together have room for.
+const AXIS_BITS: u32 = 10;
 /// Bits of an item's number, below those of its place.
 const ITEM_BITS: u32 = 64 - 3 * AXIS_BITS;
 const DIGITS: usize = 1 << AXIS_BITS;
+/// How many items have each value of each digit of their places, the lowest digit first.
+type Counts = [[u32; DIGITS]; 3];
 
 /// The item of a code.
 pub(super) fn item(code: u64) -> usize {
@@ -16,20 +20,12 @@ pub(super) fn item(code: u64) -> usize {
 
 /// Writes the codes of items, place above and number below, sorted to the first of two places. Items in one place
 /// come by their number.
-pub(super) fn sort(items: &[Item], middles: &Box8, codes: &mut [Vec<u64>; 2]) {
-    let grating = Grating::new(middles, DIGITS);
+pub(super) fn sort(unit: Unit, boxes: &[Aabb], view: &View, middles: &Box8, codes: &mut [Vec<u64>; 2]) {
     let [codes, room] = codes;
-    codes.clear();
-    let mut counts = vec![[0_u32; DIGITS]; 3];
-    codes.extend(items.iter().enumerate().map(|(number, item)| {
-        let along = |axis| spread(grating.bin(item, axis));
-        let place = along(0) << 2 | along(1) << 1 | along(2);
-        for (digit, counts) in counts.iter_mut().enumerate() {
-            counts[(place >> (digit as u32 * AXIS_BITS)) as usize % DIGITS] += 1;
-        }
-        place << ITEM_BITS | number as u64
-    }));
-    room.resize(codes.len(), 0);
+    let mut counts: Counts = [[0; DIGITS]; 3];
+    make_room(codes, boxes.len(), 0);
+    make_room(room, boxes.len(), 0);
+    encode(unit, boxes, view, &Grating::new(middles, DIGITS), codes, &mut counts);
     // Three passes of a radix sort, the lowest digit first; each keeps the order of the one before.
     for (digit, counts) in counts.iter_mut().enumerate() {
         let mut sum = 0;
@@ -45,13 +41,45 @@ pub(super) fn sort(items: &[Item], middles: &Box8, codes: &mut [Vec<u64>; 2]) {
     }
 }
 
-/// Two zeros above each of the lowest 16 bits.
-fn spread(bits: u32) -> u64 {
-    let mut wide = u64::from(bits);
-    wide = (wide | wide << 16) & 0x001f_0000_ff00_00ff;
-    wide = (wide | wide << 8) & 0x100f_00f0_0f00_f00f;
-    wide = (wide | wide << 4) & 0x10c3_0c30_c30c_30c3;
-    (wide | wide << 2) & 0x1249_2492_4924_9249
+on_unit! {
+    /// Writes the codes of items, and counts their digits.
+    fn encode(boxes: &[Aabb], view: &View, grating: &Grating, codes: &mut [u64], counts: &mut Counts) -> () =
+        encode_with
+}
+
+/// # Safety
+/// The processor has the unit.
+#[inline(always)]
+unsafe fn encode_with<L: Lanes>(
+    boxes: &[Aabb],
+    view: &View,
+    grating: &Grating,
+    codes: &mut [u64],
+    counts: &mut Counts,
+) {
+    // SAFETY: the unit is there; middles lie between the outermost ones, which makes bins of at most `DIGITS`.
+    unsafe {
+        let (from, scale, last) = grating.lanes::<L>();
+        for (number, (bounds, code)) in boxes.iter().zip(codes).enumerate() {
+            let bounds = view.load::<L>(bounds);
+            let [x, y, z, _] = spread(L::bins(bounds.middle(), from, scale, last).map(|bin| bin as u32));
+            let place = x << 2 | y << 1 | z;
+            for (digit, counts) in counts.iter_mut().enumerate() {
+                counts[(place >> (digit as u32 * AXIS_BITS)) as usize % DIGITS] += 1;
+            }
+            *code = u64::from(place) << ITEM_BITS | number as u64;
+        }
+    }
+}
+
+/// Two zeros above each of the lowest ten bits.
+#[inline(always)]
+fn spread(bits: [u32; 4]) -> [u32; 4] {
+    let mut wide = bits;
+    for (by, mask) in [(16, 0x0300_00ff), (8, 0x0300_f00f), (4, 0x030c_30c3), (2, 0x0924_9249)] {
+        wide = wide.map(|bits| (bits | bits << by) & mask);
+    }
+    wide
 }
 
 /// Cuts sorted codes into runs of at most so many; writes where each begins, and the end of the last.

@@ -3,6 +3,7 @@
 
 use super::binned_sah::SahRule;
 use super::bins::{Bins, Grating, best};
+use super::effort::Effort;
 use super::grow::{DEEPEST_CUT, Extent, Rule};
 use super::lanes::{Box8, Item};
 use super::phased::{LEAST_CHUNK, Piece, Team, cut_off, into, lock};
@@ -62,6 +63,7 @@ pub(super) fn cut<T: Team>(
             *bounds = bounds.union(&item.bounds());
             *count += 1;
         }
+        Effort { gridded: shares[i].len() as u64, cells: cells.len() as u64, ..Effort::default() }
     })?;
     let mut grids = grids.into_iter().map(into);
     let mut cells = grids.next().expect("there is at least one item");
@@ -70,7 +72,9 @@ pub(super) fn cut<T: Team>(
             *all = (all.0.union(&one.0), all.1 + one.1);
         }
     }
-    let (blocks, piece_of) = blocks(rule, &cells, least.max(root.range.len() / PIECES), &root, top);
+    let (blocks, piece_of, weighed) = blocks(rule, &cells, least.max(root.range.len() / PIECES), &root, top);
+    let joined = (shares.len() - 1) * cells.0.len();
+    team.alone(Effort { cells: weighed + joined as u64, nodes: blocks.len() as u64, ..Effort::default() })?;
 
     // Where the items of each share go in each piece: shares follow one another, so items keep their order.
     let counts: Vec<_> = shares.iter().map(|_| Mutex::new(vec![0_usize; blocks.len()])).collect();
@@ -79,6 +83,7 @@ pub(super) fn cut<T: Team>(
         for item in shares[i] {
             counts[piece_of[cell(&grating, item)] as usize] += 1;
         }
+        Effort { located: shares[i].len() as u64, ..Effort::default() }
     })?;
     let counts: Vec<_> = counts.into_iter().map(into).collect();
     let (mut rest, mut start) = (&mut to[..], 0);
@@ -105,6 +110,8 @@ pub(super) fn cut<T: Team>(
             let middles = Box8::of_point(bounds.middles());
             extents[piece] = extents[piece].union(&Extent { bounds, middles });
         }
+        let moved = shares[i].len() as u64;
+        Effort { located: moved, moved, ..Effort::default() }
     })?;
     let mut extents = vec![Extent::EMPTY; blocks.len()];
     for (_, own) in moves.into_iter().map(into) {
@@ -117,15 +124,15 @@ pub(super) fn cut<T: Team>(
 }
 
 /// Cuts the grid into blocks of at most so many items, or one cell; returns the node in the top and the depth of each,
-/// and which of them each cell is in.
+/// which of them each cell is in, and how many cells were weighed.
 fn blocks(
     rule: &SahRule,
     cells: &Cells,
     most: usize,
     root: &Piece,
     top: &mut Top,
-) -> (Vec<(usize, u32)>, Vec<u32>) {
-    let (mut blocks, mut piece_of) = (Vec::new(), vec![0; cells.0.len()]);
+) -> (Vec<(usize, u32)>, Vec<u32>, u64) {
+    let (mut blocks, mut piece_of, mut weighed) = (Vec::new(), vec![0; cells.0.len()], 0);
     let (grating, mut bins) = (Grating::unit(CELLS), Bins::new());
     let whole = Block([0..CELLS, 0..CELLS, 0..CELLS]);
     let mut open = vec![(0, whole, root.range.len(), root.extent.bounds, root.depth)];
@@ -133,6 +140,7 @@ fn blocks(
         let split = if items > most && depth < DEEPEST_CUT {
             bins.clear(&grating);
             for (at, cell) in block.cells() {
+                weighed += 1;
                 let (bounds, count) = &cells.0[cell];
                 if *count > 0 {
                     at.iter().enumerate().for_each(|(axis, bin)| bins.add(axis, *bin, bounds, *count));
@@ -155,5 +163,5 @@ fn blocks(
         open.push((right, high, items - split.left, split.bounds[1], depth + 1));
         open.push((left, low, split.left, split.bounds[0], depth + 1));
     }
-    (blocks, piece_of)
+    (blocks, piece_of, weighed)
 }

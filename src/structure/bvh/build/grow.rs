@@ -4,6 +4,8 @@
 //! side by side and the next cut reads straight through them. It costs twice 32 bytes an item.
 
 use super::bins::{Bins, Split, around, part};
+use super::effort::Effort;
+use super::few::Parting;
 use super::lanes::{Box8, Item, Unit};
 use crate::structure::bvh::BinaryNode;
 
@@ -21,10 +23,14 @@ pub(super) struct Extent {
 impl Extent {
     pub(super) const EMPTY: Self = Self { bounds: Box8::EMPTY, middles: Box8::EMPTY };
 
+    #[inline(always)]
     pub(super) fn union(&self, other: &Self) -> Self {
         Self { bounds: self.bounds.union(&other.bounds), middles: self.middles.union(&other.middles) }
     }
 }
+
+/// Along each there are bins.
+pub(super) const AXES: u64 = 3;
 
 /// What becomes of a node.
 pub(super) enum Cut {
@@ -32,6 +38,8 @@ pub(super) enum Cut {
     /// Two halves of its items as they lie.
     Halves,
     Plane(Split),
+    /// A few items parted whichever way is best.
+    Few(Parting),
 }
 
 /// How nodes are cut.
@@ -39,6 +47,8 @@ pub(super) trait Rule: Sync {
     fn unit(&self) -> Unit;
     /// The most items in a leaf, where they can be told apart or not.
     fn most_in_leaf(&self) -> usize;
+    /// Bins an axis that a node of so many items, at least two, is weighed by; none if it is not weighed.
+    fn bins(&self, items: usize) -> usize;
     /// What becomes of a node of at least two items.
     fn cut(&self, items: &[Item], extent: &Extent, bins: &mut Bins) -> Cut;
 
@@ -98,7 +108,7 @@ pub(super) fn budding(bounds: &Box8) -> BinaryNode {
 }
 
 /// Grows the hierarchy over at least one item, its root at a depth, into nodes that are cleared before; their numbers
-/// are from 0.
+/// are from 0. Returns what it did.
 pub(super) fn grow<R: Rule>(
     rule: &R,
     plot: Plot<'_>,
@@ -106,7 +116,8 @@ pub(super) fn grow<R: Rule>(
     depth: u32,
     nodes: &mut Vec<BinaryNode>,
     shed: &mut Shed,
-) {
+) -> Effort {
+    let mut effort = Effort::default();
     let Plot { mut items, order, first } = plot;
     nodes.clear();
     nodes.push(budding(&extent.bounds));
@@ -117,6 +128,13 @@ pub(super) fn grow<R: Rule>(
         let (from, to) = if place == 0 { (&**one, &mut **other) } else { (&**other, &mut **one) };
         let from = &from[range.clone()];
         let cut = rule.cut_within(from, &extent, depth, &mut shed.bins);
+        if from.len() > 1 && rule.may_cut(depth) {
+            let bins = rule.bins(from.len()) as u64;
+            effort.bins += AXES * bins;
+            effort.binned += if bins > 0 { from.len() as u64 } else { 0 };
+            effort.few += u64::from(bins == 0);
+        }
+        effort.moved += if matches!(cut, Cut::Leaf) { 0 } else { from.len() as u64 };
         let (left, place, extents) = match cut {
             Cut::Leaf => {
                 nodes[node].first = (first + range.start) as u32;
@@ -134,6 +152,12 @@ pub(super) fn grow<R: Rule>(
                 });
                 (left.len(), place, extents)
             }
+            Cut::Few(parting) => {
+                parting.part(from, &mut to[range.clone()]);
+                // No middles: those are looked at where there are more than a few items.
+                let extents = parting.bounds.map(|bounds| Extent { bounds, middles: Box8::EMPTY });
+                (parting.count(), 1 - place, extents)
+            }
             Cut::Plane(split) => {
                 let (left, right) = to[range.clone()].split_at_mut(split.left);
                 let middles = part(rule.unit(), from, &split.plane, [left, right]);
@@ -150,4 +174,6 @@ pub(super) fn grow<R: Rule>(
         shed.open.push(Open { node: pair + 1, range: middle..range.end, depth, place, extent: b });
         shed.open.push(Open { node: pair, range: range.start..middle, depth, place, extent: a });
     }
+    effort.nodes = nodes.len() as u64;
+    effort
 }

@@ -4,7 +4,8 @@
 
 use super::binned_sah::SahRule;
 use super::bins::{Bins, Grating, Split, fill, part};
-use super::grow::{Cut, DEEPEST_CUT, Extent, Rule};
+use super::effort::Effort;
+use super::grow::{AXES, Cut, DEEPEST_CUT, Extent, Rule};
 use super::lanes::{Box8, Item};
 use super::phased::{Piece, Team, chunk_of, cut_off, into, lock};
 use super::top::Top;
@@ -59,6 +60,8 @@ pub(super) fn cut<T: Team>(
             let (grating, bins) = (&nodes[*node].grating, &mut *lock(&pool[i]));
             bins.clear(grating);
             fill(rule.unit(), &from[range.clone()], grating, bins);
+            let binned = range.len() as u64;
+            Effort { binned, bins: AXES * grating.bins() as u64, ..Effort::default() }
         })?;
         level = divide(rule, items, place, nodes, &chunks, pool, top, team)?;
     }
@@ -83,11 +86,14 @@ fn divide<T: Team>(
     let mut divided: Vec<(usize, Piece, Split)> = Vec::new();
     let mut moves = Vec::with_capacity(chunks.len());
     let mut merged = Bins::new();
+    let mut effort = Effort::default();
     for Node { in_top, piece, grating, chunks: own } in nodes {
         merged.clear(&grating);
         for bins in &pool[own.clone()] {
             merged.merge(&lock(bins), &grating);
         }
+        effort.bins += AXES * (grating.bins() * (own.len() + 1)) as u64;
+        effort.nodes += 1;
         let Cut::Plane(split) = rule.weigh(&merged, &grating, piece.range.len(), &piece.extent.bounds) else {
             top.end(in_top, piece);
             continue;
@@ -105,10 +111,12 @@ fn divide<T: Team>(
         }
         divided.push((in_top, piece, split));
     }
+    team.alone(effort)?;
     team.each(moves.len(), |i| {
         let (_, plane, from, to, middles) = &mut *lock(&moves[i]);
         let [left, right] = to;
         *middles = part(rule.unit(), from, plane, [left, right]);
+        Effort { moved: from.len() as u64, ..Effort::default() }
     })?;
     let mut middles = vec![[Box8::EMPTY; 2]; divided.len()];
     for (node, .., part) in moves.into_iter().map(into) {

@@ -117,6 +117,8 @@ pub(super) trait Lanes: Copy {
     /// Three numbers and a zero.
     type Three: Copy;
     unsafe fn load(from: &Box8) -> Self;
+    /// As [`Box8::new`].
+    unsafe fn of(bounds: &Aabb) -> Self;
     /// The box of an item.
     unsafe fn load_item(from: &Item) -> Self;
     unsafe fn store(self, to: &mut Box8);
@@ -142,6 +144,10 @@ impl Lanes for Plain {
     #[inline(always)]
     unsafe fn load(from: &Box8) -> Self {
         Self(*from)
+    }
+    #[inline(always)]
+    unsafe fn of(bounds: &Aabb) -> Self {
+        Self(Box8::new(bounds))
     }
     #[inline(always)]
     unsafe fn load_item(from: &Item) -> Self {
@@ -185,7 +191,7 @@ pub(super) struct Avx2(std::arch::x86_64::__m256);
 
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
-    use super::{Avx2, Box8, Item, Lanes};
+    use super::{Aabb, Avx2, Box8, Item, Lanes};
     use std::arch::x86_64::*;
 
     // SAFETY of all blocks: the caller says that the unit is there; a `Box8` and an `Item` are 32 bytes on a 32-byte
@@ -196,6 +202,17 @@ mod avx2 {
         unsafe fn load(from: &Box8) -> Self {
             // SAFETY: as above.
             Self(unsafe { _mm256_load_ps(from.0.as_ptr()) })
+        }
+        #[inline(always)]
+        unsafe fn of(bounds: &Aabb) -> Self {
+            let Aabb { min, max } = bounds;
+            // SAFETY: as above.
+            unsafe {
+                let zero = _mm_setzero_ps();
+                let low = _mm_add_ps(_mm_set_ps(0.0, min.z, min.y, min.x), zero);
+                let high = _mm_add_ps(_mm_set_ps(0.0, max.z, max.y, max.x), zero);
+                Self(_mm256_set_m128(high, _mm_xor_ps(low, _mm_set_ps(0.0, -0.0, -0.0, -0.0))))
+            }
         }
         #[inline(always)]
         unsafe fn load_item(from: &Item) -> Self {

@@ -24,6 +24,8 @@ mod binned_sah;
 mod bins;
 mod clip;
 mod curve;
+mod effort;
+mod few;
 mod grid;
 mod grow;
 mod histograms;
@@ -43,6 +45,7 @@ use crate::geometry::Aabb;
 use glam::Vec3;
 
 pub use bins::MOST_BINS;
+pub use effort::Effort;
 
 /// The most nodes on a way from the root to a leaf.
 pub const MOST_DEPTH: usize = 128;

@@ -9,11 +9,12 @@
 //! curve alone makes a hierarchy that costs rays more than the few cuts by cost save.
 
 use super::binned_sah::SahRule;
-use super::bins::around;
+use super::few::{FEW, weigh_few_with};
 use super::grow::{Extent, Plot, Rule, budding, grow};
 use super::lanes::{Box8, Item, Lanes, on_unit};
-use super::yard::{Yard, load_all, make_room};
-use super::{BuildError, Input, Settings, curve};
+use super::yard::{View, Yard, make_room};
+use super::{BuildError, Input, MOST_IN_CLUSTER, Settings, curve};
+use crate::geometry::Aabb;
 use crate::structure::bvh::{BinaryBvh, BinaryNode};
 
 pub(super) const SUMMARY: &str = "clusters along a Z-order curve, the heuristic above them (after HLBVH)";
@@ -25,14 +26,14 @@ pub(super) struct Morton {
     above: SahRule,
     /// Cuts within a cluster.
     within: SahRule,
-    /// Items as they come, and in the order of the curve.
-    items: [Vec<Item>; 2],
+    /// Items in the order of the curve.
+    items: Vec<Item>,
     codes: [Vec<u64>; 2],
     /// Where each cluster begins on the curve, and the end of it.
     starts: Vec<u32>,
     clusters: Yard,
     top: BinaryBvh,
-    room: Vec<f32>,
+    room: Vec<(Box8, f32)>,
 }
 
 impl Morton {
@@ -41,7 +42,7 @@ impl Morton {
             cluster: settings.cluster,
             above: SahRule::new(&Settings { most_in_leaf: 1, ..settings.clone() }),
             within: SahRule::new(settings),
-            items: Default::default(),
+            items: Vec::new(),
             codes: Default::default(),
             starts: Vec::new(),
             clusters: Yard::default(),
@@ -58,16 +59,12 @@ impl Morton {
             return Ok(());
         }
         let nothing = Item::new(&Box8::EMPTY, 0, 0);
-        let [raw, along] = &mut self.items;
-        make_room(raw, count, nothing);
-        make_room(along, count, nothing);
-        let (extent, view) = load_all(input.boxes, raw)?;
-        curve::sort(raw, &extent.middles, &mut self.codes);
+        make_room(&mut self.items, count, nothing);
+        let unit = self.above.unit;
+        let (extent, view) = View::look(unit, input.boxes)?;
+        curve::sort(unit, input.boxes, &view, &extent.middles, &mut self.codes);
         let codes = &self.codes[0];
-        for ((item, place), code) in along.iter_mut().zip(&mut bvh.order).zip(codes) {
-            *item = raw[curve::item(*code)];
-            *place = item.number();
-        }
+        gather(unit, input.boxes, &view, codes, &mut self.items);
         self.starts.clear();
         curve::clusters(codes, self.cluster, &mut self.starts);
         self.grow_above();
@@ -83,14 +80,7 @@ impl Morton {
         for place in [&mut *clusters, &mut *room] {
             make_room(place, count, Item::new(&Box8::EMPTY, 0, 0));
         }
-        let mut extent = Extent::EMPTY;
-        for (i, ends) in self.starts.windows(2).enumerate() {
-            let items = &self.items[1][ends[0] as usize..ends[1] as usize];
-            let bounds = items.iter().fold(Box8::EMPTY, |all, item| all.union(&item.bounds()));
-            let middles = Box8::of_point(bounds.middles());
-            clusters[i] = Item::new(&bounds, i as u32, items.len() as u32);
-            extent = extent.union(&Extent { bounds, middles });
-        }
+        let extent = wrap(self.above.unit, &self.items, &self.starts, clusters);
         make_room(&mut self.top.order, count, 0);
         let plot = Plot { items: [clusters, room], order: &mut self.top.order, first: 0 };
         grow(&self.above, plot, extent, 0, &mut self.top.nodes, &mut self.clusters.shed);
@@ -114,74 +104,160 @@ impl Morton {
                 continue;
             }
             let cluster = self.top.order[node.first as usize] as usize;
-            let items = &self.items[1][self.starts[cluster] as usize..self.starts[cluster + 1] as usize];
-            for (place, item) in order[filled..].iter_mut().zip(items) {
+            let items = &mut self.items[self.starts[cluster] as usize..self.starts[cluster + 1] as usize];
+            self.room.resize(items.len().max(self.room.len()), (Box8::EMPTY, 0.0));
+            let end = filled + items.len();
+            nodes[to].count = 0;
+            cut(self.within.unit, &self.within, items, filled, to, nodes, &mut self.room);
+            for (place, item) in order[filled..end].iter_mut().zip(items) {
                 *place = item.number();
             }
-            self.room.resize(items.len().max(self.room.len()), 0.0);
-            let bounds = around(self.within.unit, items)[0];
-            cut(&self.within, items, &bounds, filled, to, nodes, &mut self.room);
-            filled += items.len();
+            filled = end;
         }
     }
 }
 
-/// Cuts a run of the curve where it is cheapest, again and again. Its node, which has its box, is there; the items
-/// begin at `first` of the order.
-fn cut(
-    rule: &SahRule,
-    items: &[Item],
-    bounds: &Box8,
-    first: usize,
-    node: usize,
-    nodes: &mut Vec<BinaryNode>,
-    room: &mut [f32],
-) {
-    let leaf = |nodes: &mut Vec<BinaryNode>| {
-        nodes[node].first = first as u32;
-        nodes[node].count = items.len() as u32;
-    };
-    if items.len() == 1 {
-        return leaf(nodes);
-    }
-    let (sides, middle) = sweep(rule.unit, items, room);
-    if items.len() <= rule.most_in_leaf() && !rule.pays(items.len(), bounds, sides) {
-        return leaf(nodes);
-    }
-    let (left, rest) = items.split_at(middle);
-    let pair = nodes.len();
-    nodes[node].first = pair as u32;
-    nodes[node].count = 0;
-    let bounds = [left, rest].map(|side| around(rule.unit, side)[0]);
-    nodes.extend(bounds.each_ref().map(budding));
-    cut(rule, left, &bounds[0], first, pair, nodes, room);
-    cut(rule, rest, &bounds[1], first + middle, pair + 1, nodes, room);
-}
-
 on_unit! {
-    /// Where cutting a run of at least two items costs least: half the areas of both sides, each times its items; and
-    /// how many items are left of it. Room is as long as the run.
-    fn sweep(items: &[Item], room: &mut [f32]) -> (f32, usize) = sweep_with
+    /// Copies boxes in the order of the curve.
+    fn gather(boxes: &[Aabb], view: &View, codes: &[u64], items: &mut [Item]) -> () = gather_with
 }
 
 /// # Safety
 /// The processor has the unit.
 #[inline(always)]
-unsafe fn sweep_with<L: Lanes>(items: &[Item], room: &mut [f32]) -> (f32, usize) {
-    let mut best = (f32::INFINITY, items.len() / 2);
+unsafe fn gather_with<L: Lanes>(boxes: &[Aabb], view: &View, codes: &[u64], items: &mut [Item]) {
+    let mut bounds = Box8::EMPTY;
+    for (item, code) in items.iter_mut().zip(codes) {
+        let number = curve::item(*code);
+        // SAFETY: the unit is there.
+        unsafe { view.load::<L>(&boxes[number]).store(&mut bounds) };
+        *item = Item::new(&bounds, number as u32, 1);
+    }
+}
+
+on_unit! {
+    /// Makes an item of each cluster; returns their extent.
+    fn wrap(items: &[Item], starts: &[u32], clusters: &mut [Item]) -> Extent = wrap_with
+}
+
+/// # Safety
+/// The processor has the unit.
+#[inline(always)]
+unsafe fn wrap_with<L: Lanes>(items: &[Item], starts: &[u32], clusters: &mut [Item]) -> Extent {
+    let mut extent = Extent::EMPTY;
+    let mut bounds = Box8::EMPTY;
+    // SAFETY: the unit is there.
+    unsafe {
+        let (mut all, mut middles) = (L::load(&extent.bounds), L::load(&extent.middles));
+        for (number, (ends, cluster)) in starts.windows(2).zip(clusters).enumerate() {
+            let mut around = L::load(&Box8::EMPTY);
+            let items = &items[ends[0] as usize..ends[1] as usize];
+            for item in items {
+                around = around.union(L::load_item(item));
+            }
+            around.store(&mut bounds);
+            *cluster = Item::new(&bounds, number as u32, items.len() as u32);
+            all = all.union(around);
+            middles = middles.union(L::of_point(around.middle()));
+        }
+        all.store(&mut extent.bounds);
+        middles.store(&mut extent.middles);
+    }
+    extent
+}
+
+on_unit! {
+    /// Cuts a run of the curve where it is cheapest, again and again; a few items are parted whichever way is best. Its
+    /// node, `at`, which has its box, is there; the items begin at `first` of the order. Room is as long as the run.
+    fn cut(
+        rule: &SahRule,
+        items: &mut [Item],
+        first: usize,
+        at: usize,
+        nodes: &mut Vec<BinaryNode>,
+        room: &mut [(Box8, f32)],
+    ) -> () = cut_with
+}
+
+/// # Safety
+/// The processor has the unit.
+#[inline(always)]
+unsafe fn cut_with<L: Lanes>(
+    rule: &SahRule,
+    items: &mut [Item],
+    first: usize,
+    at: usize,
+    nodes: &mut Vec<BinaryNode>,
+    room: &mut [(Box8, f32)],
+) {
+    // Runs of which only the second half is left to do: no more than there are items.
+    let mut open = [(0, 0, 0); MOST_IN_CLUSTER];
+    let mut waiting = 0;
+    let (mut node, mut start, mut end) = (at, 0, items.len());
+    loop {
+        let run = &mut items[start..end];
+        let count = run.len();
+        let parting = match count {
+            1 => None,
+            2..=FEW => {
+                // SAFETY: the unit is there.
+                let parting = unsafe { weigh_few_with::<L>(run) };
+                let mut before = [run[0]; FEW];
+                before[..count].copy_from_slice(run);
+                parting.part(&before[..count], run);
+                Some((parting.count(), parting.bounds, parting.cost))
+            }
+            // SAFETY: the unit is there.
+            _ => Some(unsafe { sweep_with::<L>(run, room) }),
+        };
+        let bounds = Box8::new(&nodes[node].bounds);
+        match parting.filter(|(.., cost)| !rule.is_leaf(count, &bounds, *cost)) {
+            Some((left, sides, _)) => {
+                let pair = nodes.len();
+                nodes[node].first = pair as u32;
+                nodes.extend(sides.each_ref().map(budding));
+                open[waiting] = (pair + 1, start + left, end);
+                waiting += 1;
+                (node, end) = (pair, start + left);
+            }
+            None => {
+                nodes[node].first = (first + start) as u32;
+                nodes[node].count = count as u32;
+                if waiting == 0 {
+                    return;
+                }
+                waiting -= 1;
+                (node, start, end) = open[waiting];
+            }
+        }
+    }
+}
+
+/// Where cutting a run of at least two items costs least: how many items are left of it, the boxes of both sides, and
+/// half their areas, each times its items. Room is as long as the run at least.
+///
+/// # Safety
+/// The processor has the unit.
+#[inline(always)]
+unsafe fn sweep_with<L: Lanes>(items: &[Item], room: &mut [(Box8, f32)]) -> (usize, [Box8; 2], f32) {
+    let mut best = (1, [Box8::EMPTY; 2], f32::INFINITY);
     // SAFETY: the unit is there.
     unsafe {
         let mut around = L::load(&Box8::EMPTY);
         for at in (1..items.len()).rev() {
             around = around.union(L::load_item(&items[at]));
-            room[at] = around.half_area() * (items.len() - at) as f32;
+            let (right, cost) = &mut room[at];
+            around.store(right);
+            *cost = around.half_area() * (items.len() - at) as f32;
         }
         around = L::load(&Box8::EMPTY);
         for at in 1..items.len() {
             around = around.union(L::load_item(&items[at - 1]));
-            let cost = around.half_area() * at as f32 + room[at];
-            if cost < best.0 {
-                best = (cost, at);
+            let (right, cost) = &room[at];
+            let cost = around.half_area() * at as f32 + cost;
+            if cost < best.2 {
+                around.store(&mut best.1[0]);
+                (best.0, best.1[1], best.2) = (at, *right, cost);
             }
         }
     }

@@ -12,8 +12,8 @@ use super::grow::{Extent, Plot, Rule, Shed, grow};
 use super::lanes::{Box8, Item};
 use super::spatial_median::MedianRule;
 use super::top::Top;
-use super::yard::{View, load, make_room};
-use super::{BuildError, Input, Settings, grid, histograms};
+use super::yard::{View, Yard, load, make_room};
+use super::{BuildError, Effort, Input, Settings, grid, histograms};
 use crate::structure::bvh::{BinaryBvh, BinaryNode};
 use std::sync::{Mutex, PoisonError};
 
@@ -25,11 +25,19 @@ pub trait Team {
     /// How many processors there are.
     fn processors(&self) -> usize;
 
-    /// Does pieces `0 .. pieces` once each, in any order, and returns when all are done.
+    /// Does pieces `0 .. pieces` once each, in any order, and returns when all are done. Each tells what it did.
     ///
     /// # Errors
     /// The team's own: some pieces may not be done then.
-    fn each(&mut self, pieces: usize, work: impl Fn(usize) + Sync) -> Result<(), Self::Error>;
+    fn each(&mut self, pieces: usize, work: impl Fn(usize) -> Effort + Sync) -> Result<(), Self::Error>;
+
+    /// Takes note of what was done between two phases, by the caller alone.
+    ///
+    /// # Errors
+    /// The team's own.
+    fn alone(&mut self, _effort: Effort) -> Result<(), Self::Error> {
+        Ok(())
+    }
 }
 
 /// A team of one.
@@ -43,8 +51,10 @@ impl Team for Alone {
         1
     }
 
-    fn each(&mut self, pieces: usize, work: impl Fn(usize) + Sync) -> Result<(), BuildError> {
-        (0..pieces).for_each(work);
+    fn each(&mut self, pieces: usize, work: impl Fn(usize) -> Effort + Sync) -> Result<(), BuildError> {
+        (0..pieces).for_each(|piece| {
+            work(piece);
+        });
         Ok(())
     }
 }
@@ -71,7 +81,7 @@ pub struct Phased {
     way: Way,
     sah: SahRule,
     median: MedianRule,
-    items: [Vec<Item>; 2],
+    yard: Yard,
     /// What was grown below each piece of the top, kept for its memory.
     grown: Vec<Vec<BinaryNode>>,
     bins: histograms::Pool,
@@ -104,7 +114,7 @@ impl Phased {
             way,
             sah: SahRule::new(settings),
             median: MedianRule::new(settings),
-            items: Default::default(),
+            yard: Yard::default(),
             grown: Vec::new(),
             bins: Default::default(),
         })
@@ -127,7 +137,7 @@ impl Phased {
             bvh.nodes.clear();
             return Ok(());
         }
-        for place in &mut self.items {
+        for place in &mut self.yard.items {
             make_room(place, boxes.len(), Item::new(&Box8::EMPTY, 0, 0));
         }
         let mut extent = self.load(input, View::PLAIN, team)?;
@@ -137,34 +147,47 @@ impl Phased {
         }
         let root = Piece { range: 0..boxes.len(), extent, depth: 0, place: 0 };
         let mut top = Top::new();
+        let items = &mut self.yard.items;
         match self.way {
             Way::SahSah => {
                 let least = LEAST_PIECE.max(boxes.len() / (PIECES * team.processors()));
-                histograms::cut(&self.sah, &mut self.items, root, least, &mut self.bins, &mut top, team)?;
+                histograms::cut(&self.sah, items, root, least, &mut self.bins, &mut top, team)?;
             }
             Way::GridSah | Way::GridBih => {
-                grid::cut(&self.sah, &mut self.items, root, LEAST_PIECE, &mut top, team)?;
+                grid::cut(&self.sah, items, root, LEAST_PIECE, &mut top, team)?;
             }
         }
         match self.way {
-            Way::SahSah | Way::GridSah => {
-                below(&self.sah, &mut self.items, &top, &mut self.grown, bvh, team)?
-            }
-            Way::GridBih => below(&self.median, &mut self.items, &top, &mut self.grown, bvh, team)?,
+            Way::SahSah | Way::GridSah => below(&self.sah, items, &top, &mut self.grown, bvh, team)?,
+            Way::GridBih => below(&self.median, items, &top, &mut self.grown, bvh, team)?,
         }
         top.assemble(&self.grown, bvh, team)?;
         view.restore(bvh, boxes);
         Ok(())
     }
 
+    /// Builds serially, in one piece, what a way is held against: all of it by the rule that the way has for what is below
+    /// the top. Returns what that took.
+    ///
+    /// # Errors
+    /// [`BuildError`]; what `bvh` holds then is of no use.
+    pub fn build_alone(&mut self, input: &Input<'_>, bvh: &mut BinaryBvh) -> Result<Effort, BuildError> {
+        input.check()?;
+        match self.way {
+            Way::SahSah | Way::GridSah => self.yard.build(&self.sah, input.boxes, bvh),
+            Way::GridBih => self.yard.build(&self.median, input.boxes, bvh),
+        }
+    }
+
     fn load<T: Team>(&mut self, input: &Input<'_>, view: View, team: &mut T) -> Result<Extent, T::Error> {
         let chunk = chunk_of(input.boxes.len());
-        let chunks = input.boxes.chunks(chunk).zip(self.items[0].chunks_mut(chunk));
+        let chunks = input.boxes.chunks(chunk).zip(self.yard.items[0].chunks_mut(chunk));
         let chunks: Vec<_> =
             chunks.map(|(boxes, items)| Mutex::new((boxes, items, Ok(Extent::EMPTY)))).collect();
         team.each(chunks.len(), |i| {
             let (boxes, items, told) = &mut *lock(&chunks[i]);
             *told = load(boxes, i * chunk, view, items);
+            Effort { loaded: boxes.len() as u64, ..Effort::default() }
         })?;
         let mut all = Extent::EMPTY;
         for chunk in chunks {
@@ -208,7 +231,7 @@ fn below<T: Team>(
         let (number, work) = &work[i];
         let (plot, nodes) = lock(work).take().expect("each piece is done once");
         let Piece { extent, depth, .. } = top.pieces[*number];
-        grow(rule, plot, extent, depth, nodes, &mut Shed::new());
+        grow(rule, plot, extent, depth, nodes, &mut Shed::new())
     })
 }
 

@@ -25,7 +25,8 @@ impl SpatialMedian {
     }
 
     pub(super) fn build(&mut self, input: &Input<'_>, bvh: &mut BinaryBvh) -> Result<(), BuildError> {
-        self.yard.build(&self.rule, input.boxes, bvh)
+        self.yard.build(&self.rule, input.boxes, bvh)?;
+        Ok(())
     }
 }
 
@@ -49,6 +50,10 @@ impl Rule for MedianRule {
 
     fn most_in_leaf(&self) -> usize {
         self.most_in_leaf
+    }
+
+    fn bins(&self, items: usize) -> usize {
+        if items > self.most_in_leaf { 2 } else { 0 }
     }
 
     fn cut(&self, items: &[Item], extent: &Extent, bins: &mut Bins) -> Cut {

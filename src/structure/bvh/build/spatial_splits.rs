@@ -113,13 +113,12 @@ impl SpatialSplits {
         let cut = self.rule.cut_within(items, &extent, depth, &mut self.shed.bins);
         let (cost, overlap) = match &cut {
             Cut::Plane(split) => (split.cost, overlap(&split.bounds)),
+            Cut::Few(parting) => (parting.cost, overlap(&parting.bounds)),
             _ => (f32::INFINITY, f32::INFINITY),
         };
         if items.len() > 1 && spare > 0 && overlap > least && self.rule.may_cut(depth) {
             let plane = self.best_plane(items, triangles, &bounds).filter(|plane| plane.cost < cost);
-            let pays = |plane: &Plane| {
-                items.len() > self.rule.most_in_leaf() || self.rule.pays(items.len(), &bounds, plane.cost)
-            };
+            let pays = |plane: &Plane| !self.rule.is_leaf(items.len(), &bounds, plane.cost);
             if let Some(sides) = plane.filter(pays).and_then(|plane| divide(items, triangles, plane, spare)) {
                 return Some(sides);
             }
@@ -129,6 +128,12 @@ impl SpatialSplits {
             Cut::Halves => {
                 let (left, right) = items.split_at(items.len() / 2);
                 Some([left.to_vec(), right.to_vec()])
+            }
+            Cut::Few(parting) => {
+                let mut parted = items.to_vec();
+                parting.part(items, &mut parted);
+                let right = parted.split_off(parting.count());
+                Some([parted, right])
             }
             Cut::Plane(split) => {
                 let nothing = Item::new(&Box8::EMPTY, 0, 0);

@@ -100,7 +100,7 @@ impl SweepSah {
         if fits {
             let whole = along[0][range.clone()].iter().map(|item| items[*item as usize].bounds());
             let whole = whole.fold(Box8::EMPTY, |all, one| all.union(&one));
-            if !rule.pays(count, &whole, best) {
+            if rule.is_leaf(count, &whole, best) {
                 return None;
             }
         }

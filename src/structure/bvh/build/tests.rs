@@ -285,8 +285,14 @@ mod phases {
         fn processors(&self) -> usize {
             self.0
         }
-        fn each(&mut self, pieces: usize, work: impl Fn(usize) + Sync) -> Result<(), BuildError> {
-            (0..pieces).rev().for_each(work);
+        fn each(
+            &mut self,
+            pieces: usize,
+            work: impl Fn(usize) -> Effort + Sync,
+        ) -> Result<(), BuildError> {
+            (0..pieces).rev().for_each(|piece| {
+                work(piece);
+            });
             Ok(())
         }
     }

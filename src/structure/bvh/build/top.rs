@@ -1,5 +1,6 @@
 //! The top of a hierarchy whose lower pieces are grown apart, and how it is put together again.
 
+use super::effort::Effort;
 use super::grow::budding;
 use super::lanes::Box8;
 use super::phased::{Piece, Team, cut_off, lock};
@@ -77,11 +78,13 @@ impl Top {
             copies.push(Mutex::new((piece, base, cut_off(&mut rest, length))));
             at = base + length;
         }
+        team.alone(Effort { nodes: self.nodes.len() as u64, ..Effort::default() })?;
         team.each(copies.len(), |i| {
             let (piece, base, to) = &mut *lock(&copies[i]);
             for (to, node) in to.iter_mut().zip(&grown[*piece][1..]) {
                 *to = moved(node, *base);
             }
+            Effort { nodes: to.len() as u64, ..Effort::default() }
         })
     }
 }

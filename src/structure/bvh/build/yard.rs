@@ -1,8 +1,8 @@
 //! What a builder keeps from build to build, and how boxes come in: fresh memory costs more than the build itself.
 
-use super::BuildError;
+use super::{BuildError, Effort};
 use super::grow::{Extent, Plot, Rule, Shed, grow};
-use super::lanes::{Box8, Item};
+use super::lanes::{Box8, Item, Lanes, Unit, on_unit};
 use crate::geometry::Aabb;
 use crate::structure::bvh::{BinaryBvh, refit};
 use glam::Vec3;
@@ -28,17 +28,17 @@ impl Default for Yard {
 }
 
 impl Yard {
-    /// Builds serially by a rule.
+    /// Builds serially by a rule; returns what it did.
     pub(super) fn build<R: Rule>(
         &mut self,
         rule: &R,
         boxes: &[Aabb],
         bvh: &mut BinaryBvh,
-    ) -> Result<(), BuildError> {
+    ) -> Result<Effort, BuildError> {
         bvh.nodes.clear();
         make_room(&mut bvh.order, boxes.len(), 0);
         if boxes.is_empty() {
-            return Ok(());
+            return Ok(Effort::default());
         }
         for place in &mut self.items {
             make_room(place, boxes.len(), Item::new(&Box8::EMPTY, 0, 0));
@@ -46,9 +46,10 @@ impl Yard {
         let (extent, view) = load_all(boxes, &mut self.items[0])?;
         let [one, other] = &mut self.items;
         let plot = Plot { items: [one, other], order: &mut bvh.order, first: 0 };
-        grow(rule, plot, extent, 0, &mut bvh.nodes, &mut self.shed);
+        let mut effort = grow(rule, plot, extent, 0, &mut bvh.nodes, &mut self.shed);
         view.restore(bvh, boxes);
-        Ok(())
+        effort.loaded = boxes.len() as u64;
+        Ok(effort)
     }
 }
 
@@ -88,6 +89,31 @@ impl View {
         Self { limit, scale: (-power).exp2() }
     }
 
+    /// Looks at all boxes, at least one: the first bad one is told.
+    pub(super) fn look(unit: Unit, boxes: &[Aabb]) -> Result<(Extent, Self), BuildError> {
+        let bad = |item: usize| BuildError::NoBox { item, bounds: boxes[item] };
+        let extent = survey(unit, boxes, Self::PLAIN).map_err(bad)?;
+        let view = Self::of(&extent.bounds.aabb(), boxes);
+        let extent = if view == Self::PLAIN { extent } else { survey(unit, boxes, view).map_err(bad)? };
+        Ok((extent, view))
+    }
+
+    /// A box in that range.
+    #[inline(always)]
+    fn bring(&self, bounds: &Aabb) -> Box8 {
+        Box8::new(&if *self == Self::PLAIN { *bounds } else { self.apply(bounds) })
+    }
+
+    /// The same in registers.
+    ///
+    /// # Safety
+    /// The processor has the unit.
+    #[inline(always)]
+    pub(super) unsafe fn load<L: Lanes>(&self, bounds: &Aabb) -> L {
+        // SAFETY: the unit is there.
+        unsafe { if *self == Self::PLAIN { L::of(bounds) } else { L::of(&self.apply(bounds)) } }
+    }
+
     fn apply(&self, bounds: &Aabb) -> Aabb {
         let bring = |at: Vec3| at.clamp(Vec3::splat(-self.limit), Vec3::splat(self.limit)) * self.scale;
         Aabb { min: bring(bounds.min), max: bring(bounds.max) }
@@ -101,7 +127,42 @@ impl View {
     }
 }
 
+on_unit! {
+    /// The extent of boxes, or the number of the first bad one.
+    fn survey(boxes: &[Aabb], view: View) -> Result<Extent, usize> = survey_with
+}
+
+/// # Safety
+/// The processor has the unit.
+#[inline(always)]
+unsafe fn survey_with<L: Lanes>(boxes: &[Aabb], view: View) -> Result<Extent, usize> {
+    let mut extent = Extent::EMPTY;
+    // SAFETY: the unit is there.
+    unsafe {
+        let (mut all, mut middles) = (L::load(&extent.bounds), L::load(&extent.middles));
+        for (i, bounds) in boxes.iter().enumerate() {
+            if !holds_a_point(bounds) {
+                return Err(i);
+            }
+            let bounds = view.load::<L>(bounds);
+            all = all.union(bounds);
+            middles = middles.union(L::of_point(bounds.middle()));
+        }
+        all.store(&mut extent.bounds);
+        middles.store(&mut extent.middles);
+    }
+    Ok(extent)
+}
+
+/// Also not where one of its numbers is none.
+fn holds_a_point(bounds: &Aabb) -> bool {
+    bounds.min.cmple(bounds.max).all()
+}
+
 /// Copies some of the boxes, the first of them item `first`; an error tells the first bad one.
+///
+/// # Panics
+/// If there are fewer `items` than boxes.
 pub(super) fn load(
     boxes: &[Aabb],
     first: usize,
@@ -109,15 +170,14 @@ pub(super) fn load(
     items: &mut [Item],
 ) -> Result<Extent, BuildError> {
     let mut extent = Extent::EMPTY;
-    for (i, (bounds, item)) in boxes.iter().zip(items).enumerate() {
-        // Also not where one is no number.
-        if !bounds.min.cmple(bounds.max).all() {
+    for (i, (bounds, item)) in boxes.iter().zip(&mut items[..boxes.len()]).enumerate() {
+        if !holds_a_point(bounds) {
             return Err(BuildError::NoBox { item: first + i, bounds: *bounds });
         }
-        let bounds = Box8::new(&if view == View::PLAIN { *bounds } else { view.apply(bounds) });
-        let middle = Box8::of_point(bounds.middles());
+        let bounds = view.bring(bounds);
         *item = Item::new(&bounds, (first + i) as u32, 1);
-        extent = extent.union(&Extent { bounds, middles: middle });
+        let middles = Box8::of_point(bounds.middles());
+        extent = extent.union(&Extent { bounds, middles });
     }
     Ok(extent)
 }

@@ -34,7 +34,7 @@ pub(crate) fn render(words: &RenderWords) -> Result<()> {
     let processors = team.most_processors();
     let scheme = Scheme::new(&words.scheme, &team, processors, BTreeMap::new());
     let mut scheme = scheme.map_err(|error| MeasureError::Words(error.to_string()))?;
-    let scene = read(&words.scene)?;
+    let scene = at_frame(read(&words.scene)?, words.frame)?;
     scene.warnings.iter().for_each(|warning| print::note(warning));
     let (width, height) = words.size;
     let aspect = width as f32 / height as f32;
@@ -55,12 +55,7 @@ pub(crate) fn render(words: &RenderWords) -> Result<()> {
         let light = light_at(&camera, scene);
         world.add_light(light);
     }
-    let unsaid = Look::default();
-    let look = Look {
-        depth: words.depth,
-        ambient: scene.ambient.unwrap_or(unsaid.ambient),
-        background: scene.background.unwrap_or(unsaid.background),
-    };
+    let look = Look { depth: words.depth, ..Look::of(world.scene()) };
     let mut film = Film::new(&team, width, height).context("the picture is too large")?;
     let before = team.now();
     let shares = {
@@ -86,6 +81,19 @@ pub(crate) fn render(words: &RenderWords) -> Result<()> {
         counts.refraction,
         counts.rays() as f64 / seconds / 1e6,
     ))
+}
+
+/// A scene that moves as it is in a frame of its own; one that does not has no other than the first.
+fn at_frame(scene: Scene, frame: u32) -> Result<Scene, MeasureError> {
+    let animation = &scene.animation;
+    let frames = if animation.is_still() { 1 } else { animation.frames.max(1) };
+    let time = animation.times(frames).nth(frame as usize).ok_or_else(|| {
+        MeasureError::Words(format!(
+            "--frame {frame}: expected one from 0 to {}, as the scene has them",
+            frames - 1
+        ))
+    })?;
+    Ok(if animation.is_still() { scene } else { scene.still(time) })
 }
 
 fn cores() -> u32 {

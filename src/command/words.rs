@@ -118,6 +118,7 @@ const RUN_EXAMPLES: &str = "Examples:
 const RENDER_EXAMPLES: &str = "Examples:
   apportion render room
   apportion render sponza.obj --camera=-12,1.5,0.3:0,3.5,0:60 --size 1024x768 --out sponza.exr
+  apportion render kitchen.aff --frame 300 --depth 3
   apportion render corner --scheme static_blocks --processors 2";
 
 /// The words of `render`.
@@ -129,6 +130,9 @@ pub(crate) struct RenderWords {
     /// Where the eye is, the point it looks at, and how wide it opens from bottom to top, in metres and degrees.
     #[arg(long, value_name = "X,Y,Z:X,Y,Z[:DEGREES]", value_parser = camera, allow_hyphen_values = true)]
     pub(crate) camera: Option<CameraWords>,
+    /// Which frame of a scene that moves, from 0, as many as it has itself; with --camera, seen from there.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) frame: u32,
     /// Pixels across and down.
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
     pub(crate) size: (u32, u32),

@@ -1,5 +1,6 @@
 //! Jobs: work for a scheme, and the serial oracle each result is held against.
 
+pub mod animate;
 pub mod build;
 pub mod collide;
 pub mod cull;

@@ -66,7 +66,7 @@ impl Span {
     pub(crate) fn widened(self, error: f64) -> Self {
         let greatest = self.first_origin.abs().max(self.last_origin.abs()).max_element();
         let room = error as f32 * (greatest + 2.0);
-        let out = Vec3::select(self.rises.into(), Vec3::splat(room), Vec3::splat(-room));
+        let out = Vec3A::select(self.rises.into(), Vec3A::splat(room), Vec3A::splat(-room));
         // The rates have half of it already.
         let slack = 0.5 * SLACK as f32;
         Self {

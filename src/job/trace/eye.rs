@@ -1,9 +1,9 @@
 //! Rays from a camera.
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DMat3, DVec3, Vec2, Vec3};
 
 use crate::geometry::{Camera, Lens, Ray};
-use crate::scene::{PointLight, Scene};
+use crate::scene::{PointLight, Scene, View};
 use crate::structure::bvh::Intersector;
 
 use super::World;
@@ -35,6 +35,21 @@ impl Eye {
         }
     }
 
+    /// The camera of a view before so many pixels; none of a view that looks nowhere. `aspect` is the width over the
+    /// height of what is seen.
+    pub fn of_view(view: &View, aspect: f32, (width, height): (u32, u32)) -> Option<Self> {
+        let lens = Lens::Symmetric { fov_y: view.fov_y, aspect };
+        let camera = Camera::look_at(view.eye, view.look, view.up, lens, 1.0, 2.0).ok()?;
+        Some(Self::new(&camera, width, height))
+    }
+
+    /// Where points are seen: the inverse of [`Eye::ray`], whose rays go through the middles of pixels.
+    pub fn projection(&self) -> Projection {
+        // The way to a point is so much of the corner's, of a step across and of one down.
+        let ways = DMat3::from_cols(self.corner, self.across, self.down);
+        Projection { origin: self.origin.as_dvec3(), inverse: ways.inverse() }
+    }
+
     /// Pixels across and down.
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)
@@ -46,6 +61,23 @@ impl Eye {
         let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
         let direction = self.corner + self.across * x + self.down * y;
         Ray::new(self.origin, direction.normalize().as_vec3())
+    }
+}
+
+/// Tells where points are seen.
+#[derive(Clone, Copy, Debug)]
+pub struct Projection {
+    origin: DVec3,
+    inverse: DMat3,
+}
+
+impl Projection {
+    /// Where a point in metres is seen, in pixels from the picture's upper left corner; none of one that is not before
+    /// the eye.
+    #[inline]
+    pub fn place_of(&self, point: DVec3) -> Option<(f64, f64)> {
+        let way = self.inverse * (point - self.origin);
+        (way.x > 0.0).then(|| (way.y / way.x, way.z / way.x))
     }
 }
 

@@ -65,6 +65,35 @@ pub struct Frame<'a, M: Machine> {
     film: &'a Film<M>,
     /// What each tile is charged on a simulated machine; natively they take their time.
     costs: Option<&'a TileCosts>,
+    /// What is known of it beforehand.
+    draft: Option<&'a Draft>,
+}
+
+/// A picture of which part is known before it is traced: the pixels that are taken as they are.
+#[derive(Clone, Debug)]
+pub struct Draft {
+    width: usize,
+    /// Colours and distances, as a [`Film`] holds them; a distance of NaN says that a pixel is not known.
+    pixels: Vec<[f32; 4]>,
+}
+
+impl Draft {
+    /// Nothing is known of any of so many pixels across and down.
+    pub fn new((width, height): (u32, u32)) -> Self {
+        let count = width as usize * height as usize;
+        Self { width: width as usize, pixels: vec![[f32::NAN; 4]; count] }
+    }
+
+    /// What is known of a pixel: its colour and distance.
+    pub fn known(&self, x: u32, y: u32) -> Option<[f32; 4]> {
+        let pixel = self.pixels[y as usize * self.width + x as usize];
+        (!pixel[3].is_nan()).then_some(pixel)
+    }
+
+    /// Takes a pixel for known.
+    pub fn set(&mut self, x: u32, y: u32, pixel: [f32; 4]) {
+        self.pixels[y as usize * self.width + x as usize] = pixel;
+    }
 }
 
 impl<'a, M: Machine> Frame<'a, M> {
@@ -76,7 +105,7 @@ impl<'a, M: Machine> Frame<'a, M> {
         assert_eq!(eye.size(), film.size(), "the camera is before this very picture");
         let tiles = Tiles::new(film.size(), tile);
         film.cut(tiles.count());
-        Self { tracer, eye, tiles, film, costs: None }
+        Self { tracer, eye, tiles, film, costs: None, draft: None }
     }
 
     /// The same, each tile charged what it was measured to cost.
@@ -86,6 +115,17 @@ impl<'a, M: Machine> Frame<'a, M> {
     pub fn charged(self, costs: &'a TileCosts) -> Self {
         assert_eq!(costs.len(), self.tiles.count(), "a cost for each tile");
         Self { costs: Some(costs), ..self }
+    }
+
+    /// The same, of which the pixels that are known need not be traced.
+    ///
+    /// # Panics
+    /// If the draft is of another size.
+    pub fn drafted(self, draft: &'a Draft) -> Self {
+        let (width, height) = self.film.size();
+        let size = (draft.width, draft.pixels.len());
+        assert_eq!(size, (width as usize, width as usize * height as usize), "a draft of this very picture");
+        Self { draft: Some(draft), ..self }
     }
 
     /// How the picture is cut.
@@ -113,6 +153,10 @@ impl<'a, M: Machine> Frame<'a, M> {
             }
             for y in top..down.end.min(top + SQUARE as u32) {
                 for x in left..across.end.min(left + SQUARE as u32) {
+                    if let Some(known) = self.draft.and_then(|draft| draft.known(x, y)) {
+                        self.write(&claim, (x, y), known);
+                        continue;
+                    }
                     pixels[count] = (x, y);
                     count += 1;
                 }
@@ -121,8 +165,15 @@ impl<'a, M: Machine> Frame<'a, M> {
         self.trace_pixels(&claim, &pixels[..count], counts);
     }
 
+    /// Writes a pixel of a claimed tile: its colour and distance.
+    fn write(&self, _claim: &Claim<'_>, (x, y): (u32, u32), pixel: [f32; 4]) {
+        // SAFETY: the claim keeps everybody else from this tile, and the pixels of others are not written. What the last
+        // to have the tile wrote happened before the claim.
+        unsafe { self.film.slot(x, y).write(pixel) };
+    }
+
     /// Traces some pixels of a claimed tile, not more than are asked about together.
-    fn trace_pixels(&self, _claim: &Claim<'_>, pixels: &[(u32, u32)], counts: &mut Counts) {
+    fn trace_pixels(&self, claim: &Claim<'_>, pixels: &[(u32, u32)], counts: &mut Counts) {
         let mut rays = [Ray::new(Vec3::ZERO, Vec3::ZERO); TOGETHER];
         let mut hits = [None; TOGETHER];
         let (rays, hits) = (&mut rays[..pixels.len()], &mut hits[..pixels.len()]);
@@ -131,11 +182,9 @@ impl<'a, M: Machine> Frame<'a, M> {
         }
         self.tracer.intersector().closest_coherent(rays, hits);
         counts.eye += rays.len() as u64;
-        for (((x, y), ray), hit) in pixels.iter().zip(rays).zip(hits) {
-            let colour = self.tracer.seen(ray, *hit, counts);
-            // SAFETY: the claim keeps everybody else from this tile, and the pixels of others are not written. What the
-            // last to have the tile wrote happened before the claim.
-            unsafe { self.film.slot(*x, *y).write(colour.to_array()) };
+        for ((place, ray), hit) in pixels.iter().zip(rays).zip(hits) {
+            let [r, g, b] = self.tracer.seen(ray, *hit, counts).to_array();
+            self.write(claim, *place, [r, g, b, hit.map_or(f32::INFINITY, |hit| hit.t)]);
         }
     }
 }

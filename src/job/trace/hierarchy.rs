@@ -140,8 +140,8 @@ impl Hierarchy {
         Ok(Self { triangles, others: others_of(world, builder)? })
     }
 
-    /// Follows a world that has been updated ([`World::update`]) with those meshes `changed`: of two levels, only their
-    /// hierarchies and the one over places are built anew; of one, all.
+    /// Follows a world that follows a pose ([`World::follow`]), in which those meshes `changed` shape: of two levels, only
+    /// their hierarchies and the one over places are built anew; of one, all.
     ///
     /// # Errors
     /// As [`Hierarchy::new`]; then it is of no use.
@@ -166,6 +166,30 @@ impl Hierarchy {
         }
         self.others = others_of(world, builder)?;
         Ok(())
+    }
+
+    /// The same, but hierarchies over triangles that have moved keep how they group them, and take in where they are.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::new`]; then it is of no use.
+    ///
+    /// # Panics
+    /// Of one level, if there are fewer triangles than there were: [`Hierarchy::update`] takes in what comes and goes.
+    pub fn refit(&mut self, world: &World, changed: &[u32], builder: &mut Builder) -> Result<(), BuildError> {
+        let (meshes, places) = (&world.scene().meshes, world.placements());
+        match &mut self.triangles {
+            Triangles::Watertight(Meshes::Two(bvh)) => bvh.refit(meshes, changed, places, builder)?,
+            Triangles::Fast(Meshes::Two(bvh)) => bvh.refit(meshes, changed, places, builder)?,
+            Triangles::Watertight(Meshes::One(bvh)) => bvh.refit(&world.items().triangles),
+            Triangles::Fast(Meshes::One(bvh)) => bvh.refit(&world.items().triangles),
+        }
+        self.others = others_of(world, builder)?;
+        Ok(())
+    }
+
+    /// What a ray through the box around all triangles is expected to cost, in nodes and blocks.
+    pub fn expected_cost(&self) -> f64 {
+        each!(&self.triangles, bvh => bvh.expected_cost())
     }
 
     /// What a ray meets first among the triangles alone, and what it took to find it, which is added to `counts`.

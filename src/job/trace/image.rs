@@ -14,6 +14,11 @@ pub struct Image {
 }
 
 impl Image {
+    /// Red, green and blue of each pixel in 8 bits, coded as sRGB: below 0 and NaN are black, beyond 1 is white.
+    pub fn codes(&self) -> Vec<u8> {
+        self.pixels.as_flattened().iter().map(|linear| coded(*linear)).collect()
+    }
+
     /// Writes it as PNG, 8 bits a colour, coded as sRGB: below 0 and NaN are black, beyond 1 is white.
     ///
     /// # Errors
@@ -24,8 +29,7 @@ impl Image {
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
         let mut writer = encoder.write_header()?;
-        let codes: Vec<u8> = self.pixels.as_flattened().iter().map(|linear| coded(*linear)).collect();
-        writer.write_image_data(&codes)?;
+        writer.write_image_data(&self.codes())?;
         Ok(writer.finish()?)
     }
 

@@ -2,9 +2,10 @@ use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 
 use super::tests::{bits, scene};
 use super::*;
+use crate::geometry::Aabb;
 use crate::geometry::hit::Cone;
 use crate::geometry::{Hit, Ray, Sphere};
-use crate::scene::{Flock, Primitive, Scene, Shape, SplitMix64, by_name};
+use crate::scene::{Bent, Flock, Mesh, Primitive, Scene, Shape, SplitMix64, by_name};
 use crate::structure::bvh::Intersector;
 use crate::structure::bvh::build::{Builder, Settings};
 
@@ -21,7 +22,7 @@ fn picture(world: &World, camera: &crate::geometry::Camera, levels: Levels, kind
     let threads = crate::machine::Threads::new(1).unwrap();
     let mut film = Film::new(&threads, 90, 70).unwrap();
     let tracer = Tracer::new(world, &hierarchy, Look::default());
-    let frame = Frame::new(tracer, Eye::new(camera, 90, 70), Tiles::OF_PAPER, &film);
+    let frame = Frame::new(tracer, Eye::new(camera, 90, 70), Tiles::OF_PAPER, &mut film);
     crate::scheme::tiles::share("serial", &threads, 1, &frame).unwrap();
     film.image()
 }
@@ -192,9 +193,14 @@ fn a_world_that_moves_is_followed_by_both_levels() {
             node.transform.translation += Vec3A::splat(0.02 * number as f32);
         }
         scene.meshes[3].positions.iter_mut().for_each(|position| *position *= 1.1);
-        let transforms = scene.world_transforms();
         let is_seen = |node: u32| node % 7 != frame as u32;
-        world.update(&transforms, is_seen, [(3, scene.meshes[3].clone())]);
+        let Mesh { positions, shading, .. } = &scene.meshes[3];
+        let bounds_of_bent = Aabb::of_points(positions.iter().copied());
+        let normals = shading.normals.values.clone();
+        let mut pose = scene.pose(0.0);
+        pose.visible = (0..scene.nodes.len() as u32).map(is_seen).collect();
+        pose.bent = vec![Bent { mesh: 3, positions: positions.clone(), normals, bounds: bounds_of_bent }];
+        world.follow(&pose);
         let mut seen = scene.clone();
         for (number, node) in seen.nodes.iter_mut().enumerate() {
             node.mesh = node.mesh.filter(|_| is_seen(number as u32));

@@ -25,9 +25,9 @@ mod world;
 
 pub use costs::{Costed, TileCosts};
 pub use counts::Counts;
-pub use eye::{Eye, default_view, light_at, view_within};
+pub use eye::{Eye, Projection, default_view, light_at, view_within};
 pub use film::{Film, MOST_PIXELS};
-pub use frame::{Frame, Tiles};
+pub use frame::{Draft, Frame, Tiles};
 pub use hierarchy::{Hierarchy, Levels, TriangleKind};
 pub use image::Image;
 pub use list::List;

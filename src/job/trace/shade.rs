@@ -15,6 +15,7 @@
 use glam::Vec3;
 
 use crate::geometry::{Hit, Ray};
+use crate::scene::Scene;
 use crate::structure::bvh::Intersector;
 
 use super::surface::Surface;
@@ -28,6 +29,9 @@ pub const MOST_DEPTH: u32 = 64;
 pub struct Look {
     /// How many bounces are followed, up to [`MOST_DEPTH`]; 0 sees surfaces alone.
     pub depth: u32,
+    /// How many lights a point of a surface asks at most whether they are hidden; of more, it takes so many in a row,
+    /// which ones hangs on the point, and counts each for as many as there are to one taken.
+    pub most_lights: u32,
     /// Light from everywhere.
     pub ambient: Vec3,
     /// Seen where nothing is.
@@ -36,7 +40,21 @@ pub struct Look {
 
 impl Default for Look {
     fn default() -> Self {
-        Self { depth: 5, ambient: Vec3::splat(0.15), background: Vec3::new(0.35, 0.47, 0.65) }
+        Self {
+            depth: 5,
+            most_lights: u32::MAX,
+            ambient: Vec3::splat(0.15),
+            background: Vec3::new(0.35, 0.47, 0.65),
+        }
+    }
+}
+
+impl Look {
+    /// That of a scene: its own background and ambient light, where it says any.
+    pub fn of(scene: &Scene) -> Self {
+        let unsaid = Self::default();
+        let ambient = scene.ambient.unwrap_or(unsaid.ambient);
+        Self { ambient, background: scene.background.unwrap_or(unsaid.background), ..unsaid }
     }
 }
 
@@ -104,7 +122,11 @@ impl<'a> Tracer<'a> {
         }
         let origin = bounce.above(surface);
         let mirrored = bounce.mirrored();
-        for light in &self.world.scene.lights {
+        let lights = self.world.lights();
+        let asked = lights.len().min(self.look.most_lights as usize);
+        let share = if asked < lights.len() { lights.len() as f32 / asked as f32 } else { 1.0 };
+        let first = if asked < lights.len() { some_number(surface.point) } else { 0 };
+        for light in (0..asked).map(|next| &lights[(first + next) % lights.len()]) {
             let way = light.position - origin;
             let Some(direction) = way.try_normalize() else { continue };
             let cosine = direction.dot(bounce.smooth);
@@ -117,7 +139,7 @@ impl<'a> Tracer<'a> {
                 continue;
             }
             let shine = power(direction.dot(mirrored).max(0.0), surface.material.exponent);
-            colour += light.colour * (diffuse * cosine + highlight * shine);
+            colour += light.colour * (diffuse * cosine + highlight * shine) * share;
         }
         colour
     }
@@ -192,6 +214,15 @@ impl Bounce {
         };
         material.mirror + (Vec3::ONE - material.mirror) * power((1.0 - cosine).clamp(0.0, 1.0), 5)
     }
+}
+
+/// A number that hangs on a point, and on nothing else, as if drawn at random (the finaliser of MurmurHash3).
+fn some_number(point: Vec3) -> usize {
+    let mixed = point.to_array().iter().fold(0, |mixed: u64, number| {
+        let mixed = (mixed ^ u64::from(number.to_bits())).wrapping_mul(0xff51_afd7_ed55_8ccd);
+        (mixed ^ mixed >> 33).wrapping_mul(0xc4ce_b9fe_1a85_ec53)
+    });
+    (mixed >> 33) as usize
 }
 
 /// A number to a whole power, by squaring.

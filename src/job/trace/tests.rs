@@ -218,7 +218,12 @@ fn middle(scene: &Scene, camera: &Camera, look: Look) -> Vec3 {
 
 #[test]
 fn each_term_is_what_its_formula_says() {
-    let look = Look { depth: 3, ambient: Vec3::splat(0.25), background: Vec3::new(0.5, 0.25, 0.125) };
+    let look = Look {
+        depth: 3,
+        ambient: Vec3::splat(0.25),
+        background: Vec3::new(0.5, 0.25, 0.125),
+        ..Look::default()
+    };
     let close = |found: Vec3, expected: Vec3| {
         // Shadow rays start a little above the floor.
         assert!(found.distance(expected) < 5e-5, "{found} and not {expected}");
@@ -254,7 +259,7 @@ fn each_term_is_what_its_formula_says() {
 #[test]
 fn glass_mirrors_lets_through_and_fades() {
     let plain_glass = Material { highlight: Vec3::ZERO, ..Material::dielectric("glass", 1.5) };
-    let look = Look { depth: 1, ambient: Vec3::ZERO, background: Vec3::ONE };
+    let look = Look { depth: 1, ambient: Vec3::ZERO, background: Vec3::ONE, ..Look::default() };
     let see = |material: Material, depth: u32| {
         let mut scene = Scene::new("ball");
         let material = scene.add_material(material);
@@ -279,7 +284,7 @@ fn light_is_wholly_mirrored_inside_beyond_the_critical_angle() {
     scene.lights.clear();
     let world = World::new(scene.clone());
     let list = List(world.items());
-    let look = Look { depth: 1, ambient: Vec3::ZERO, background: Vec3::ONE };
+    let look = Look { depth: 1, ambient: Vec3::ZERO, background: Vec3::ONE, ..Look::default() };
     let tracer = Tracer::new(&world, &list, look);
     for (sine, expected) in [(0.87, (1, 0)), (0.6, (1, 1)), (0.0, (1, 1))] {
         let direction = Vec3::new(sine, (1.0_f32 - sine * sine).sqrt(), 0.0);

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use glam::{Affine3A, Mat3, Vec3};
 
 use crate::geometry::Aabb;
-use crate::scene::{Mesh, PointLight, Primitive, Scene};
+use crate::scene::{Mesh, PointLight, Pose, Primitive, Scene};
 use crate::structure::bvh::Placement;
 
 /// The shapes of a scene in world space, each triangle listed. Item `i` is triangle `i`; then come the primitives, and
@@ -53,6 +53,8 @@ pub struct World {
     /// How many triangles there are in all.
     triangles: usize,
     flocks: Vec<FlockRun>,
+    /// As they are now; the scene has them as they stand when nothing moves.
+    lights: Vec<PointLight>,
 }
 
 /// The items of one node's flock.
@@ -81,8 +83,15 @@ impl World {
     /// # Panics
     /// If there are 2^32 of them or more; [`World::count`] tells beforehand.
     pub fn new(scene: Scene) -> Self {
-        let mut world =
-            Self { scene, items: OnceLock::new(), runs: Vec::new(), triangles: 0, flocks: Vec::new() };
+        let lights = scene.lights.clone();
+        let mut world = Self {
+            scene,
+            items: OnceLock::new(),
+            runs: Vec::new(),
+            triangles: 0,
+            flocks: Vec::new(),
+            lights,
+        };
         let transforms = world.scene.world_transforms();
         world.number(&transforms, |_| true);
         world
@@ -93,21 +102,19 @@ impl World {
         scene.instances().1 + scene.primitives_placed()
     }
 
-    /// Follows what moves: where each node is in the world, by its number; whether what it places is to be seen; and the
-    /// meshes that are others than they were, by number. Items are numbered anew.
+    /// Follows what moves: takes over a pose of its own scene. What is not seen is left out, so items are numbered anew.
     ///
     /// # Panics
-    /// If there are not as many transforms as nodes, or is no mesh of such a number, or as [`World::new`].
-    pub fn update(
-        &mut self,
-        transforms: &[Affine3A],
-        is_seen: impl Fn(u32) -> bool,
-        meshes: impl IntoIterator<Item = (u32, Mesh)>,
-    ) {
-        for (number, mesh) in meshes {
-            self.scene.meshes[number as usize] = mesh;
+    /// If it is a pose of another scene.
+    pub fn follow(&mut self, pose: &Pose) {
+        for bent in &pose.bent {
+            let mesh = &mut self.scene.meshes[bent.mesh as usize];
+            mesh.positions.clone_from(&bent.positions);
+            mesh.shading.normals.values.clone_from(&bent.normals);
+            mesh.bounds = bent.bounds;
         }
-        self.number(transforms, is_seen);
+        self.lights.clone_from(&pose.lights);
+        self.number(&pose.world, |node| pose.visible[node as usize]);
     }
 
     fn number(&mut self, transforms: &[Affine3A], is_seen: impl Fn(u32) -> bool) {
@@ -143,7 +150,12 @@ impl World {
 
     /// Adds a light.
     pub fn add_light(&mut self, light: PointLight) {
-        self.scene.lights.push(light);
+        self.lights.push(light);
+    }
+
+    /// The lights there are now.
+    pub fn lights(&self) -> &[PointLight] {
+        &self.lights
     }
 
     /// What rays can meet, one by one: made when it is first asked for, and as large as it comes to.

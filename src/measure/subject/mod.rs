@@ -1,5 +1,6 @@
 //! What is measured: the way from a cell to the job, scheme and machine it names.
 
+mod animate;
 mod build;
 mod collide;
 mod cull;
@@ -109,6 +110,7 @@ pub struct Known {
 /// The jobs, by word: how each is made ready. The list is the table of contents.
 type OpenJob = fn(&Cell, &Options, &mut SubjectCache) -> Result<Box<dyn Subject>, MeasureError>;
 const JOBS: &[(&str, OpenJob)] = &[
+    ("animate", animate::open),
     ("build", build::open),
     ("collide", collide::open),
     ("cull", cull::open),
@@ -120,7 +122,7 @@ const JOBS: &[(&str, OpenJob)] = &[
     ("tree", tree::open),
 ];
 /// The jobs made of independent pieces; the others descend a hierarchy.
-const IN_PIECES: &[&str] = &["build", "cull_boxes", "rays", "tiles", "trace"];
+const IN_PIECES: &[&str] = &["animate", "build", "cull_boxes", "rays", "tiles", "trace"];
 
 /// All schemes, whatever their shape.
 fn schemes() -> impl Iterator<Item = &'static About> {
@@ -159,6 +161,7 @@ pub struct SubjectCache {
     scenes: HashMap<String, Rc<Stage>>,
     boxes: HashMap<String, Rc<cull_boxes::BoxStage>>,
     pairs: HashMap<String, Rc<collide::PairStage>>,
+    animations: HashMap<String, Rc<animate::AnimateStage>>,
     pictures: HashMap<String, Rc<trace::TraceStage>>,
     hierarchies: HashMap<String, Rc<rays::Built>>,
     rays: HashMap<String, Rc<rays::RayStage>>,

@@ -47,19 +47,19 @@ pub(super) struct TraceStage {
     told: [Sample; 2],
 }
 
-struct Asked {
-    size: (u32, u32),
-    tile: (u32, u32),
-    depth: u32,
-    frames_a_run: usize,
-    builder: &'static str,
-    triangle: TriangleKind,
-    levels: Levels,
+/// What pictures are to be, and what they are made by.
+#[derive(Clone, Copy)]
+pub(super) struct Pictured {
+    pub(super) size: (u32, u32),
+    pub(super) tile: (u32, u32),
+    pub(super) depth: u32,
+    pub(super) builder: &'static str,
+    pub(super) triangle: TriangleKind,
 }
 
-impl Asked {
-    fn of(cell: &Cell) -> Result<Self, MeasureError> {
-        let settings = JobSettings::of(cell);
+impl Pictured {
+    /// As the settings say.
+    pub(super) fn of(settings: &JobSettings) -> Result<Self, MeasureError> {
         let pair = |most: u32| {
             move |text: &str| {
                 let (across, down) = text.split_once('x')?;
@@ -68,15 +68,30 @@ impl Asked {
             }
         };
         let names: Vec<_> = BUILDERS.iter().map(|about| (about.name, about.name)).collect();
-        let asked = Asked {
+        let depth = f64::from(Look::default().depth);
+        Ok(Self {
             size: settings.read("size", (512, 512), "WIDTHxHEIGHT, such as 640x480", pair(MOST))?,
             tile: settings.read("tile", Tiles::OF_PAPER, "WIDTHxHEIGHT, such as 32x4", pair(Tiles::MOST))?,
-            depth: settings.number("depth", f64::from(Look::default().depth), 0.0..=f64::from(MOST_DEPTH))?
-                as u32,
-            frames_a_run: settings.number("frames_a_run", 1.0, 1.0..=1000.0)? as usize,
+            depth: settings.number("depth", depth, 0.0..=f64::from(MOST_DEPTH))? as u32,
             builder: settings.choice("builder", &names)?,
             triangle: settings.choice("triangle", TriangleKind::ALL)?,
+        })
+    }
+}
+
+struct Asked {
+    picture: Pictured,
+    levels: Levels,
+    frames_a_run: usize,
+}
+
+impl Asked {
+    fn of(cell: &Cell) -> Result<Self, MeasureError> {
+        let settings = JobSettings::of(cell);
+        let asked = Asked {
+            picture: Pictured::of(&settings)?,
             levels: settings.choice("levels", Levels::ALL)?,
+            frames_a_run: settings.number("frames_a_run", 1.0, 1.0..=1000.0)? as usize,
         };
         settings.finish(cell)?;
         Ok(asked)
@@ -102,7 +117,7 @@ pub(super) fn open(
     };
     if cell.machine == THREADS {
         let team = cache.team(cell.processors)?;
-        let way = Way::Traced(film(&*team, asked.size)?);
+        let way = Way::Traced(film(&*team, asked.picture.size)?);
         Ok(Box::new(PictureSubject::<_, Threads>::new(cell, team, way, stage, one)?))
     } else {
         let machine = simulated(cell, cache)?;
@@ -114,7 +129,7 @@ pub(super) fn open(
 impl TraceStage {
     fn new(asked: &Asked, cell: &Cell, options: &Options, one: &Threads) -> Result<Self, MeasureError> {
         let scene = staging::scene(cell)?;
-        let (width, height) = asked.size;
+        let (width, height) = asked.picture.size;
         let cameras = if options.path.is_some() || cell.settings.contains_key("scene.path") {
             super::cameras(cell, &scene, options)?.frames
         } else {
@@ -129,10 +144,11 @@ impl TraceStage {
             let message = format!("scene `{}`: {items} triangles and spheres, more than {most}", scene.name);
             return Err(MeasureError::Failed(message));
         }
-        let world = World::new(scene);
-        let mut builder = Builder::new(asked.builder, &Settings::default()).map_err(failed)?;
+        let (look, world) = (Look::of(&scene), World::new(scene));
+        let mut builder = Builder::new(asked.picture.builder, &Settings::default()).map_err(failed)?;
         let before = one.now();
-        let hierarchy = Hierarchy::of(&world, asked.levels, &mut builder, asked.triangle).map_err(failed)?;
+        let hierarchy =
+            Hierarchy::of(&world, asked.levels, &mut builder, asked.picture.triangle).map_err(failed)?;
         let time = (one.now() - before) as f64 / one.ticks_per_nanosecond();
         let told = [
             Sample::of_path("hierarchy_time", time),
@@ -144,8 +160,8 @@ impl TraceStage {
             hierarchy,
             pictures: RefCell::new(vec![None; cameras.len()]),
             eyes: cameras.iter().map(|camera| Eye::new(camera, width, height)).collect(),
-            look: Look { depth: asked.depth, ..Look::default() },
-            tile: asked.tile,
+            look: Look { depth: asked.picture.depth, ..look },
+            tile: asked.picture.tile,
             frames_a_run: asked.frames_a_run,
             costs: OnceCell::new(),
         })
@@ -195,7 +211,8 @@ impl TraceStage {
     }
 }
 
-fn film<M: Machine>(machine: &M, (width, height): (u32, u32)) -> Result<Film<M>, MeasureError> {
+/// A film of so many pixels across and down.
+pub(super) fn film<M: Machine>(machine: &M, (width, height): (u32, u32)) -> Result<Film<M>, MeasureError> {
     Film::new(machine, width, height).ok_or_else(|| {
         MeasureError::Setting(format!(
             "setting `job.size` is `{width}x{height}`, expected at most {MOST_PIXELS} pixels"

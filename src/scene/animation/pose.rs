@@ -84,6 +84,9 @@ impl Scene {
             }
             node.mesh = node.mesh.filter(|_| pose.visible[index]);
         }
+        for flock in &mut still.flocks {
+            flock.nodes.retain(|node| pose.visible[*node as usize]);
+        }
         for bent in pose.bent {
             let mesh = &mut still.meshes[bent.mesh as usize];
             let (name, triangles) = (std::mem::take(&mut mesh.name), std::mem::take(&mut mesh.triangles));

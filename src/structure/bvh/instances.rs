@@ -149,6 +149,40 @@ impl<T: TriangleTest> Instances<T> {
         Ok(())
     }
 
+    /// As [`Instances::update`], but the meshes that are others than they were keep their hierarchies, which take in where
+    /// their triangles are now ([`WideBvh::refit`]).
+    ///
+    /// # Errors
+    /// As [`Instances::new`].
+    ///
+    /// # Panics
+    /// As [`Instances::new`], or if a mesh has fewer triangles than it had.
+    pub fn refit(
+        &mut self,
+        meshes: &[Mesh],
+        changed: &[u32],
+        places: &[Placement],
+        builder: &mut Builder,
+    ) -> Result<(), BuildError> {
+        for number in changed {
+            if let Some(Some(bvh)) = self.meshes.get_mut(*number as usize) {
+                bvh.refit(&corners_of(&meshes[*number as usize], |corner| corner));
+            }
+        }
+        self.update(meshes, &[], places, builder)
+    }
+
+    /// How many nodes and blocks a ray is expected to go through that meets the box around all, as
+    /// [`WideBvh::expected_cost`] tells it, places of meshes taken as their boxes in the world.
+    pub fn expected_cost(&self) -> f64 {
+        let costs: Vec<f64> =
+            self.meshes.iter().map(|bvh| bvh.as_ref().map_or(0.0, WideBvh::expected_cost)).collect();
+        self.top.expected_cost(|place| match &self.stand[place] {
+            Standing { place: Some(_), index, .. } => costs[*index as usize],
+            fixed => self.bvh(fixed).expected_cost(),
+        })
+    }
+
     /// How many bytes the hierarchies and the places take.
     pub fn bytes(&self) -> usize {
         let meshes = self.meshes.iter().flatten().chain(&self.fixed).map(WideBvh::bytes);
@@ -274,14 +308,19 @@ impl<T: TriangleTest> Intersector for Instances<T> {
     }
 }
 
+/// The corners of a mesh's triangles, each put where it belongs.
+fn corners_of(mesh: &Mesh, put: impl Fn(Vec3) -> Vec3) -> Vec<[Vec3; 3]> {
+    let corners = |triangle: &[u32; 3]| triangle.map(|vertex| put(mesh.positions[vertex as usize]));
+    mesh.triangles.iter().map(corners).collect()
+}
+
 /// The hierarchy over a mesh's triangles, each corner put where it belongs.
 fn hierarchy<T: TriangleTest>(
     mesh: &Mesh,
     put: impl Fn(Vec3) -> Vec3,
     builder: &mut Builder,
 ) -> Result<WideBvh<T>, BuildError> {
-    let corners = |triangle: &[u32; 3]| triangle.map(|vertex| put(mesh.positions[vertex as usize]));
-    let triangles: Vec<[Vec3; 3]> = mesh.triangles.iter().map(corners).collect();
+    let triangles = corners_of(mesh, put);
     let boxes: Vec<Aabb> = triangles.iter().map(|corners| Aabb::of_points(*corners)).collect();
     let mut binary = BinaryBvh::default();
     builder.build(&Input { boxes: &boxes, triangles: Some(&triangles) }, &mut binary)?;

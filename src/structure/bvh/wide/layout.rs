@@ -80,12 +80,15 @@ impl Node {
         unsafe { L::load(self.planes.get_unchecked(row), from) }
     }
 
+    /// The box of a child.
+    pub(super) fn bounds(&self, i: usize) -> Aabb {
+        let corner = |from: usize| Vec3::from_array([0, 2, 4].map(|row| self.planes[row + from][i]));
+        Aabb { min: corner(0), max: corner(1) }
+    }
+
     /// The boxes of its children.
     pub(super) fn boxes(&self) -> impl Iterator<Item = Aabb> {
-        let corner =
-            |from: usize, i: usize| Vec3::from_array([0, 2, 4].map(|row| self.planes[row + from][i]));
-        let boxes = (0..WIDTH).map(move |i| Aabb { min: corner(0, i), max: corner(1, i) });
-        boxes.filter(|bounds| !bounds.is_empty())
+        (0..WIDTH).map(|i| self.bounds(i)).filter(|bounds| !bounds.is_empty())
     }
 
     pub(super) fn set(&mut self, i: usize, bounds: &Aabb, child: Child) {

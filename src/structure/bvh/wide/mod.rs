@@ -9,7 +9,9 @@
 
 mod boxes;
 mod collapse;
+mod expected;
 mod layout;
+mod refit;
 
 pub use boxes::BoxBvh;
 pub(super) use layout::{Alone, Block, Child, Node, TRIANGLES, Together, WIDTH};

@@ -72,8 +72,8 @@ fn together(input: &Input<'_>, teams: &[Threads; 2], rounds: usize) {
     for (name, way) in Way::ALL {
         let mut builder = Phased::new(way, &Settings::default()).expect("the settings are sound");
         let mut bvh = BinaryBvh::default();
-        let mut schemes =
-            [0, 1].map(|i| Scheme::new("fixed_tiles", &teams[i], i + 1, BTreeMap::new()).expect("it is listed"));
+        let mut schemes = [0, 1]
+            .map(|i| Scheme::new("fixed_tiles", &teams[i], i + 1, BTreeMap::new()).expect("it is listed"));
         let (mut pairs, mut wholes) = (Vec::new(), Vec::new());
         for round in 0..=rounds {
             let mut times = [0.0; 3];

@@ -56,7 +56,11 @@ fn refitting_saves_time_and_costs_rays() {
     let refitted = samples(&cell("fixed_tiles", "threads", 2, &settings)).unwrap();
     let built = samples(&cell("fixed_tiles", "threads", 2, &settings[1..])).unwrap();
     for metric in ["sah_cost", "nodes_per_ray"] {
-        assert_eq!(of(&refitted, metric, Some(0)), of(&built, metric, Some(0)), "both are built over what is flat");
+        assert_eq!(
+            of(&refitted, metric, Some(0)),
+            of(&built, metric, Some(0)),
+            "both are built over what is flat"
+        );
         let (kept, anew) = (of(&refitted, metric, Some(2)), of(&built, metric, Some(2)));
         assert!(kept > anew, "{metric}: {kept} with the shape of the first frame, {anew} built anew");
     }

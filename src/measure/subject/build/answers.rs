@@ -1,7 +1,7 @@
 //! What each frame of the job `build` must come to, and what it is worth: one processor's hierarchies.
 
-use super::{Asked, How, corners_of, boxes_of};
 use super::super::{Cell, MeasureError, failed};
+use super::{Asked, How, boxes_of, corners_of};
 use crate::geometry::Aabb;
 use crate::job::rays::{RayKind, ray_set};
 use crate::job::trace::{Hierarchy, TriangleKind, World};

@@ -54,7 +54,8 @@ impl Asked {
     fn of(cell: &Cell, options: &Options) -> Result<Self, MeasureError> {
         let settings = JobSettings::of(cell);
         let ways = Way::ALL.into_iter().map(|(name, way)| (name, How::Phases(way)));
-        let hows: Vec<_> = ways.chain(BUILDERS.iter().map(|about| (about.name, How::Alone(about.name)))).collect();
+        let hows: Vec<_> =
+            ways.chain(BUILDERS.iter().map(|about| (about.name, How::Alone(about.name)))).collect();
         let kinds: Vec<_> = KINDS.iter().map(|kind| (kind.name, kind.kind)).collect();
         let default = Settings::default();
         let asked = Asked {
@@ -175,7 +176,19 @@ impl<H: Borrow<M>, M: Machine> BuildSubject<H, M> {
         let turns = turns(asked.bend, options.frames);
         let (bvh, corners) = (BinaryBvh::default(), corners_of(&flat.0, &flat.1));
         Ok(Self {
-            machine, scheme, processors, serial, costs, asked, flat, turns, maker, refit, bvh, corners, answers,
+            machine,
+            scheme,
+            processors,
+            serial,
+            costs,
+            asked,
+            flat,
+            turns,
+            maker,
+            refit,
+            bvh,
+            corners,
+            answers,
         })
     }
 
@@ -190,8 +203,7 @@ impl<H: Borrow<M>, M: Machine> BuildSubject<H, M> {
                 machine.alone(|cpu| cpu.charge(cycles)).map_err(failed)
             }
             Maker::Phases(phased) => {
-                let mut crew =
-                    Crew::new(machine, &mut self.scheme, self.processors).charging(self.costs);
+                let mut crew = Crew::new(machine, &mut self.scheme, self.processors).charging(self.costs);
                 phased.build(&input, &mut self.bvh, &mut crew).map_err(failed)
             }
             Maker::Alone(builder) => builder.build(&input, &mut self.bvh).map_err(failed),
@@ -240,7 +252,11 @@ impl<H: Borrow<M>, M: Machine> Subject for BuildSubject<H, M> {
                 self.corners.clone_from(&corners);
             }
             let before = self.machine.borrow().now();
-            if self.asked.refits { self.refit(&places)? } else { self.build(&boxes)? }
+            if self.asked.refits {
+                self.refit(&places)?
+            } else {
+                self.build(&boxes)?
+            }
             let machine = self.machine.borrow();
             let time = (machine.now() - before) as f64 / machine.ticks_per_nanosecond();
             let from = self.refit.as_ref().map(|(flat, _)| flat);

@@ -84,16 +84,18 @@ pub(super) unsafe fn weigh_few_with<L: Lanes>(items: &[Item]) -> Parting {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Aabb;
     use crate::structure::bvh::build::lanes::Unit;
     use crate::structure::bvh::build::tests::scattered;
-    use crate::geometry::Aabb;
 
     #[test]
     fn no_other_way_is_cheaper() {
         for seed in 1..200 {
             let count = 2 + seed as usize % 3;
-            let boxes: Vec<Aabb> = scattered(count, seed).iter().map(|corners| Aabb::of_points(*corners)).collect();
-            let item = |i: usize| Item::new(&Box8::new(&boxes[i]), i as u32, 1 + seed as u32 % (3 + i as u32));
+            let boxes: Vec<Aabb> =
+                scattered(count, seed).iter().map(|corners| Aabb::of_points(*corners)).collect();
+            let item =
+                |i: usize| Item::new(&Box8::new(&boxes[i]), i as u32, 1 + seed as u32 % (3 + i as u32));
             let items: Vec<Item> = (0..count).map(item).collect();
             let side = |set: usize| {
                 let among = (0..count).filter(|i| set >> i & 1 == 1);

@@ -1,16 +1,16 @@
 //! Built for speed: items along a Z-order curve (Morton 1966; Lauterbach et al. 2009), in clusters of a few that are
 //! neighbours on it, and the surface area heuristic over the clusters (after Pantaleoni and Luebke 2010, "HLBVH").
 //!
-//! Steps: 1. the middles' places on the curve, 11 bits an axis; 2. sort by them; 3. cut at the highest bit in which the
+//! Steps: 1. the middles' places on the curve, 10 bits an axis; 2. sort by them; 3. cut at the highest bit in which the
 //! ends of a run differ until runs are clusters; 4. grow a hierarchy over the clusters as `binned_sah` does;
-//! 5. within a cluster, cut the curve where it is cheapest.
+//! 5. within a cluster, cut the curve where it is cheapest, and a few items whichever way is.
 //!
 //! Departs from the paper in that clusters are small, a setting, and not all that share a cell of a coarse grid: the
 //! curve alone makes a hierarchy that costs rays more than the few cuts by cost save.
 
 use super::binned_sah::SahRule;
 use super::few::{FEW, weigh_few_with};
-use super::grow::{Extent, Plot, Rule, budding, grow};
+use super::grow::{Extent, Plot, budding, grow};
 use super::lanes::{Box8, Item, Lanes, on_unit};
 use super::yard::{View, Yard, make_room};
 use super::{BuildError, Input, MOST_IN_CLUSTER, Settings, curve};

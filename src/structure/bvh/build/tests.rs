@@ -285,11 +285,7 @@ mod phases {
         fn processors(&self) -> usize {
             self.0
         }
-        fn each(
-            &mut self,
-            pieces: usize,
-            work: impl Fn(usize) -> Effort + Sync,
-        ) -> Result<(), BuildError> {
+        fn each(&mut self, pieces: usize, work: impl Fn(usize) -> Effort + Sync) -> Result<(), BuildError> {
             (0..pieces).rev().for_each(|piece| {
                 work(piece);
             });

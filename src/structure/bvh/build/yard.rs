@@ -1,8 +1,8 @@
 //! What a builder keeps from build to build, and how boxes come in: fresh memory costs more than the build itself.
 
-use super::{BuildError, Effort};
 use super::grow::{Extent, Plot, Rule, Shed, grow};
 use super::lanes::{Box8, Item, Lanes, Unit, on_unit};
+use super::{BuildError, Effort};
 use crate::geometry::Aabb;
 use crate::structure::bvh::{BinaryBvh, refit};
 use glam::Vec3;

@@ -263,3 +263,32 @@ unsafe fn sweep_with<L: Lanes>(items: &[Item], room: &mut [(Box8, f32)]) -> (usi
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::structure::bvh::build::lanes::Unit;
+    use crate::structure::bvh::build::tests::{nasty, scattered};
+
+    #[test]
+    fn every_vector_unit_builds_the_same() {
+        let many: Vec<Aabb> = scattered(5000, 9).iter().map(|corners| Aabb::of_points(*corners)).collect();
+        for cluster in [1, 8, 32] {
+            for (what, boxes) in nasty().into_iter().chain([("many", many.clone())]) {
+                let built = [Unit::best(), Unit::Plain].map(|unit| {
+                    let mut builder = Morton::new(&Settings { cluster, ..Settings::default() });
+                    (builder.above.unit, builder.within.unit) = (unit, unit);
+                    let mut bvh = BinaryBvh::default();
+                    builder.build(&Input::of(&boxes), &mut bvh).expect("they are fine");
+                    bvh
+                });
+                // As text, which tells -0 from 0.
+                assert_eq!(
+                    format!("{:?}", built[0]),
+                    format!("{:?}", built[1]),
+                    "{what}, {cluster} a cluster"
+                );
+            }
+        }
+    }
+}

@@ -16,7 +16,7 @@ pub(crate) fn stress(what: &str, processors: u32, seconds: u64) -> Result<()> {
     if report.violations.is_empty() {
         let (runs, nodes) = (report.runs, report.nodes);
         return print::line(&format!(
-            "{what}: {runs} runs, {nodes} nodes, turns or boxes, every invariant held"
+            "{what}: {runs} runs, {nodes} nodes, turns, boxes or rays, every invariant held"
         ));
     }
     let mut text = format!("an invariant broke after {} runs", report.runs);

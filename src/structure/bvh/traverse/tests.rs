@@ -1,6 +1,6 @@
 //! Every way through a wide hierarchy against the list gone through one by one, and that against f64.
 
-use super::super::{BinaryBvh, BinaryNode, Intersector, WideBvh, leaks};
+use super::super::{BinaryBvh, BinaryNode, Intersector, WideBvh, leaks, leaks_together};
 use super::{RayCounts, TriangleList};
 use crate::geometry::hit::{Fast, TriangleTest, Watertight};
 use crate::geometry::oracle::{Crossing, nearest_crossing};
@@ -205,6 +205,27 @@ fn packets_tell_what_the_list_tells() {
 }
 
 #[test]
+fn packets_that_come_apart_tell_what_the_list_tells() {
+    let random = &mut Random(6);
+    let triangles = soup(random, 3000);
+    let bvh = halved(&triangles, 2);
+    let mut rays = Vec::new();
+    // So narrow that they stay together, and so wide that they do not, by turns.
+    for packet in 0..40 {
+        let from = Vec3::splat(3.0) + random.point();
+        let apart = if packet % 20 < 10 { 1e-5 } else { 0.1 };
+        rays.extend((0..16).map(|_| Ray::new(from, random.point() * apart - from)));
+    }
+    assert!(hold_both(&triangles, &bvh, &rays) > 300);
+    let wide = WideBvh::<Watertight>::new(&bvh, &triangles);
+    for unit in Unit::all() {
+        let packets = rays.chunks(16).map(|rays| wide.packet(unit, rays, &mut [None; 16]));
+        let packets: Vec<Option<bool>> = packets.collect();
+        assert!(packets.contains(&Some(true)) && packets.contains(&Some(false)), "{unit:?} {packets:?}");
+    }
+}
+
+#[test]
 fn odd_triangles_and_odd_rays_hit_nothing_and_hide_nothing() {
     let random = &mut Random(4);
     let mut triangles = soup(random, 60);
@@ -344,11 +365,9 @@ fn no_ray_slips_between_triangles() {
             ball(60, squeeze).into_iter().map(|corners| corners.map(|corner| corner + shift)).collect();
         let wide = WideBvh::<Watertight>::new(&halved(&triangles, 2), &triangles);
         for within in [Vec3::ZERO, Vec3::new(0.3, -0.2, 0.1)] {
-            assert_eq!(
-                leaks(&wide, &triangles, within * squeeze + shift, 0..125_000),
-                0,
-                "{squeeze} {shift}"
-            );
+            let within = within * squeeze + shift;
+            assert_eq!(leaks(&wide, &triangles, within, 0..125_000), 0, "{squeeze} {shift}");
+            assert_eq!(leaks_together(&wide, &triangles, within, 0..8_000), 0, "{squeeze} {shift}");
         }
     }
 }

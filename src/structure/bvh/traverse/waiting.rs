@@ -68,62 +68,58 @@ impl<'a> Stack<'a> {
     /// There is one at least, and a place for each.
     #[inline(always)]
     pub(super) unsafe fn nearest(&mut self, mut met: u64, enters: &[f32; WIDTH], node: &Node) -> Child {
-        let how_many = met.count_ones() as usize;
         let mut next = || {
             let lane = met.trailing_zeros() as usize & (WIDTH - 1);
             met &= met.wrapping_sub(1);
-            Waiting::new(enters[lane], node.children[lane])
+            (Waiting::new(enters[lane], node.children[lane]), met)
         };
-        // A few are put in order without a branch, which nobody could foresee.
+        // Mostly one or two are met, which one branch each tells: a jump by their number would be foreseen less often.
+        // Those few are put in order without a branch, which nobody could foresee either.
         // SAFETY: the places are the caller's.
         unsafe {
-            match how_many {
-                1 => next().child(),
-                2 => {
-                    let (far, near) = next().farther_first(next());
-                    self.wait(far);
-                    near.child()
-                }
-                3 => {
-                    let (a, b) = next().farther_first(next());
-                    let (a, c) = a.farther_first(next());
-                    let (b, c) = b.farther_first(c);
-                    self.wait(a);
-                    self.wait(b);
-                    c.child()
-                }
-                4 => {
-                    let (a, b) = next().farther_first(next());
-                    let (c, d) = next().farther_first(next());
-                    let (a, c) = a.farther_first(c);
-                    let (b, d) = b.farther_first(d);
-                    let (b, c) = b.farther_first(c);
-                    self.wait(a);
-                    self.wait(b);
-                    self.wait(c);
-                    d.child()
-                }
-                _ => {
-                    let first = self.top;
-                    for _ in 0..how_many {
-                        self.wait(next());
-                    }
-                    sort(self.places.get_unchecked_mut(first..self.top));
-                    self.top -= 1;
-                    self.places.get_unchecked(self.top).assume_init().child()
+            let (a, left) = next();
+            if left == 0 {
+                return a.child();
+            }
+            let (b, left) = next();
+            let (a, b) = a.farther_first(b);
+            if left == 0 {
+                self.wait(a);
+                return b.child();
+            }
+            let (c, left) = next();
+            let (a, c) = a.farther_first(c);
+            let (b, c) = b.farther_first(c);
+            if left == 0 {
+                self.wait(a);
+                self.wait(b);
+                return c.child();
+            }
+            let first = self.top;
+            self.wait(a);
+            self.wait(b);
+            self.wait(c);
+            loop {
+                let (next, left) = next();
+                self.wait(next);
+                if left == 0 {
+                    break;
                 }
             }
+            sort(self.places.get_unchecked_mut(first..self.top), 3);
+            self.top -= 1;
+            self.places.get_unchecked(self.top).assume_init().child()
         }
     }
 }
 
-/// Puts what waits in order, the nearest last.
+/// Puts what waits in order, the nearest last; the first `sorted` are.
 ///
 /// # Safety
 /// All were written.
 #[inline(always)]
-unsafe fn sort(waiting: &mut [MaybeUninit<Waiting>]) {
-    for end in 1..waiting.len() {
+unsafe fn sort(waiting: &mut [MaybeUninit<Waiting>], sorted: usize) {
+    for end in sorted..waiting.len() {
         let mut at = end;
         // SAFETY: all were written, and `at` is above 0.
         while at > 0 && unsafe { waiting[at - 1].assume_init() < waiting[at].assume_init() } {

@@ -17,7 +17,7 @@ use super::gltf_motion::{RATE, curve};
 const CLOSE: f64 = 1e-3;
 /// How often the way from one of the file's key frames to the next may be halved.
 const HALVINGS: u32 = 5;
-/// The most vertices that all key frames of a mesh may have together: 384 MB.
+/// The most vertices, and nodes that have to be placed for them, that all key frames of a mesh may have together: 384 MB.
 const MOST: usize = 1 << 24;
 
 /// Vertices of a mesh that came with one of its primitives.
@@ -102,7 +102,8 @@ fn put(scene: &mut Scene, own: u32, skinned: bool, keys: Vec<BendKey>) {
 
 /// The key frames of a body at some times, and between them as many as it needs; one if it never changes.
 fn key_frames(scene: &Scene, body: &Body, times: Vec<f64>) -> Option<Vec<BendKey>> {
-    if times.len().max(1).checked_mul(body.positions.len())? > MOST {
+    let each = body.positions.len() + scene.nodes.len();
+    if times.len().max(1).checked_mul(each)? > MOST {
         return None;
     }
     let Some(first) = times.first() else { return Some(vec![body.at(scene, 0.0)]) };
@@ -121,7 +122,7 @@ fn key_frames(scene: &Scene, body: &Body, times: Vec<f64>) -> Option<Vec<BendKey
                     let straight = (a.as_dvec3() + b.as_dvec3()) * 0.5;
                     straight.distance(DVec3::from(*found)) <= close
                 });
-            let room = (keys.len() + coming.len() + times.len()) * body.positions.len() < MOST;
+            let room = (keys.len() + coming.len() + times.len()) * each < MOST;
             if is_close || halvings == HALVINGS || !room {
                 keys.push(next);
             } else {

@@ -1,4 +1,4 @@
-//! What is modelled: a graph of transforms, meshes, camera paths; from files or generated.
+//! What is modelled: a graph of transforms, meshes, what moves and when, camera paths; from files or generated.
 //!
 //! Lengths are in metres; y is up in generated scenes. A new file format is one file in `formats/` and
 //! one line in its list; a new generator one file in `generate/` and one line in its list.

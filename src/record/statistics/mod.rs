@@ -5,10 +5,12 @@
 mod frames;
 mod picture;
 mod shift;
+mod similarity;
 
 pub use frames::FrameTimes;
 pub use picture::{average_pnsr, error_free_pnsr, least_error_pnsr, mean_square_error, pnsr};
 pub use shift::{blocks, shift};
+pub use similarity::structural_similarity;
 
 /// How many times the bootstrap draws; the interval's ends move by under 1 % of its width beyond this.
 const DRAWS: usize = 2_000;

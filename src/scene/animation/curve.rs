@@ -5,9 +5,9 @@ use glam::{DAffine3, DQuat, DVec3, Quat, Vec3};
 use super::turn::{self, slerp};
 use super::{Curve, HermiteKey, Motion, spline};
 
-/// The key at or before a time, the one after it, and how far along the way between them the time is, from 0 up to
-/// 1. Before the first key and after the last both are that one. Keys that coincide are passed over but for the last
-/// of them, so that no way has no length. None without keys.
+/// The key at or before a time, the one after it, and what share of the way between them has passed, below 1. Before
+/// the first key and after the last both are that one. Keys that coincide are passed over but for the last of them, so
+/// that no way has no length. None without keys.
 pub(super) fn between<K>(keys: &[K], when: impl Fn(&K) -> f64, time: f64) -> Option<(usize, usize, f64)> {
     let last = keys.len().checked_sub(1)?;
     let after = keys.partition_point(|key| when(key) <= time);

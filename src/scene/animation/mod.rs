@@ -11,6 +11,7 @@ mod turn;
 mod validate;
 
 pub use pose::{Bent, Pose};
+pub(super) use validate::FURTHEST;
 
 /// What moves in a scene; nothing by default.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,7 +20,7 @@ pub struct Animation {
     pub start: f64,
     /// When the last frame is.
     pub end: f64,
-    /// How many frames whoever made it asks for; the first and the last are among them.
+    /// How many frames whoever made it asks for, the first and the last among them; 0 if no number.
     pub frames: u32,
     /// How things move; several nodes may follow one motion.
     pub motions: Vec<Motion>,

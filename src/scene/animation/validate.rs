@@ -8,7 +8,7 @@ use super::{Curve, Motion};
 /// The least keys a Kochanek-Bartels spline can have.
 const SPLINE: usize = 4;
 /// The furthest time from 0, in seconds: twice the age of the world. Slopes times this stay finite.
-const FURTHEST: f64 = 1e18;
+pub(in crate::scene) const FURTHEST: f64 = 1e18;
 
 impl Scene {
     /// Checks that what moves is there, once; that keys are in order, enough and finite; that a bent mesh keeps its

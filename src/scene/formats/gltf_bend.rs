@@ -9,15 +9,16 @@
 use glam::{Affine3A, DVec3, Mat3, Mat4, Vec3};
 use gltf::animation::{Interpolation, Property};
 
+use super::super::animation::FURTHEST;
 use super::super::{Bend, BendKey, Curve, Mesh, Scene, SceneError};
 use super::gltf_buffers::Buffers;
-use super::gltf_motion::{RATE, curve};
+use super::gltf_motion::{curve, frames};
 
 /// How near a vertex must come to its way, as a share of the mesh's diagonal.
 const CLOSE: f64 = 1e-3;
 /// How often the way from one of the file's key frames to the next may be halved.
 const HALVINGS: u32 = 5;
-/// The most vertices that all key frames of a mesh may have together: 384 MB.
+/// The most vertices, and nodes that have to be placed for them, that all key frames of a mesh may have together: 384 MB.
 const MOST: usize = 1 << 24;
 
 /// Vertices of a mesh that came with one of its primitives.
@@ -62,7 +63,8 @@ pub(super) fn read(
             if !vectors.all(|vector| vector.is_finite()) {
                 return Err("a vertex would be nowhere".to_owned());
             }
-            Ok(put(scene, own, node.skin().is_some(), keys))
+            put(scene, own, node.skin().is_some(), keys);
+            Ok(())
         });
         if let Err(fault) = bent {
             let name = node.name().unwrap_or("");
@@ -92,17 +94,22 @@ fn put(scene: &mut Scene, own: u32, skinned: bool, keys: Vec<BendKey>) {
     }
     if let [first, .., last] = &keys[..] {
         let animation = &mut scene.animation;
+        // Where nodes move too, all this is within their time.
         if animation.is_still() {
             (animation.start, animation.end) = (first.time, last.time);
-            animation.frames = ((last.time - first.time) * RATE).ceil() as u32 + 1;
+        } else if animation.motions.is_empty() {
+            animation.start = animation.start.min(first.time);
+            animation.end = animation.end.max(last.time);
         }
+        animation.frames = frames(animation);
         animation.bends.push(Bend { mesh, keys });
     }
 }
 
 /// The key frames of a body at some times, and between them as many as it needs; one if it never changes.
 fn key_frames(scene: &Scene, body: &Body, times: Vec<f64>) -> Option<Vec<BendKey>> {
-    if times.len().max(1).checked_mul(body.positions.len())? > MOST {
+    let each = body.positions.len() + scene.nodes.len();
+    if times.len().max(1).checked_mul(each)? > MOST {
         return None;
     }
     let Some(first) = times.first() else { return Some(vec![body.at(scene, 0.0)]) };
@@ -121,7 +128,7 @@ fn key_frames(scene: &Scene, body: &Body, times: Vec<f64>) -> Option<Vec<BendKey
                     let straight = (a.as_dvec3() + b.as_dvec3()) * 0.5;
                     straight.distance(DVec3::from(*found)) <= close
                 });
-            let room = (keys.len() + coming.len() + times.len()) * body.positions.len() < MOST;
+            let room = (keys.len() + coming.len() + times.len()) * each < MOST;
             if is_close || halvings == HALVINGS || !room {
                 keys.push(next);
             } else {
@@ -228,8 +235,7 @@ fn read_body(
     if let Some(skin) = node.skin() {
         read_skin(&skin, &parts, buffers, placed, blocks, &mut body)?;
     }
-    // Sorted last, for a time that is no number must not be among them.
-    times.retain(|time| time.is_finite());
+    times.retain(|time| time.abs() <= FURTHEST);
     times.sort_by(f64::total_cmp);
     times.dedup();
     Ok((body, times))

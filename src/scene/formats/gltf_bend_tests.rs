@@ -48,6 +48,29 @@ impl File {
     }
 }
 
+#[test]
+fn absurd_times_and_counts_leave_the_mesh_still() {
+    for (times, weights, works) in [
+        (vec![0.0, 3e38], vec![0.0, 1.0], true),
+        (vec![0.0, f32::NAN], vec![0.0, 1.0], false),
+        (vec![1.0, 0.0, 1.0], vec![0.0, 1.0, 2.0], true),
+        (vec![0.0, 1.0], vec![0.0, f32::NAN], false),
+        (vec![0.0, 1.0], vec![0.0], false),
+    ] {
+        let mut file = File::default();
+        file.add("VEC3", 3, &CORNERS);
+        file.add("VEC3", 3, &CORNERS);
+        file.add("SCALAR", 1, &times);
+        file.add("SCALAR", 1, &weights);
+        let scene = file.read(
+            r#""nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"targets":[{"POSITION":1}]}]}],
+            "animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"weights"}}],"samplers":[{"input":2,"output":3}]}]"#,
+        );
+        assert_eq!(scene.warnings.is_empty(), works, "{times:?} {weights:?}: {:?}", scene.warnings);
+        assert!(scene.pose(0.5).bent.iter().flat_map(|bent| &bent.positions).all(|at| at.is_finite()));
+    }
+}
+
 const CORNERS: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
 
 #[test]

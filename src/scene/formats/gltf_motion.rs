@@ -9,11 +9,11 @@ use std::collections::BTreeMap;
 use glam::{Quat, Vec3};
 use gltf::animation::{Interpolation, Property};
 
-use super::super::{Curve, HermiteKey, Motion, Scene, SceneError};
+use super::super::{Animation, Curve, HermiteKey, Motion, Scene, SceneError};
 use super::gltf_buffers::Buffers;
 
 /// Frames a second.
-pub(super) const RATE: f64 = 30.0;
+const RATE: f64 = 30.0;
 
 /// Adds what moves; `placed` are the scene's nodes by the document's, those that are shown.
 pub(super) fn read(
@@ -58,11 +58,16 @@ pub(super) fn read(
     }
     let animation = &mut scene.animation;
     (animation.start, animation.end) = (start, end);
-    animation.frames = ((end - start) * RATE).ceil() as u32 + 1;
+    animation.frames = frames(animation);
     for (number, (node, motion)) in (0..).zip(motions) {
         animation.followers.push((node, number));
         animation.motions.push(motion);
     }
+}
+
+/// How many frames an animation is given.
+pub(super) fn frames(animation: &Animation) -> u32 {
+    (((animation.end - animation.start) * RATE).ceil() as u32).saturating_add(1)
 }
 
 /// The node's own transform: what no channel changes stays.

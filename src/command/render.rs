@@ -1,8 +1,8 @@
 //! `apportion render`: a picture of a scene.
 
+use super::print;
 use super::progress::Bar;
-use super::words::RenderWords;
-use super::{print, words};
+use super::render_words::{CameraWords, RenderWords};
 use anyhow::{Context, Result};
 use apportion::geometry::{Camera, Lens};
 use apportion::job::trace::{
@@ -129,7 +129,7 @@ fn writer(out: &Path) -> Result<Writer, MeasureError> {
 }
 
 /// The camera of the words, its planes such that the scene lies between them.
-fn looking(words: &words::CameraWords, scene: &Scene, aspect: f32) -> Result<Camera, MeasureError> {
+fn looking(words: &CameraWords, scene: &Scene, aspect: f32) -> Result<Camera, MeasureError> {
     let [eye, look] = [words.eye, words.look].map(Vec3::from);
     let bounds = scene.bounds();
     let far = eye.distance(bounds.centre()) + 1.1 * bounds.half_diagonal();

@@ -1,8 +1,8 @@
 //! The job `animate`: the frames of a scene that moves (Lext, Assarsson and Möller 2000; P3-10 to P3-13).
 //!
 //! Settings: `job.size`, `job.tile`, `job.depth`, `job.builder`, `job.triangle` as of the job `trace`; `job.levels`
-//! (`two`, `one`); `job.upkeep`, one of [`frames::SCHEMES`], with `job.percent`; `job.approximation`, one of
-//! [`APPROXIMATIONS`], `NAME` or `NAME:KNOB`; `job.lights`, how many of the scene's lights are lit (all). The frames of a
+//! (`two`, `one`); `job.upkeep`, one of [`frames::SCHEMES`](crate::scheme::frames::SCHEMES), with `job.percent`; `job.approximation`, one of
+//! [`APPROXIMATIONS`](crate::job::animate::APPROXIMATIONS), `NAME` or `NAME:KNOB`; `job.lights`, how many of the scene's lights are lit (all). The frames of a
 //! cell are spread evenly over the scene's animation, first and last included; with `job.frames` it has so many, of
 //! which the cell takes those in the middle: the more there are, the more has one in common with the next.
 //!
@@ -11,21 +11,23 @@
 //! before the tiles and after them takes the time it took here, and each tile what it took here, times the machine's
 //! `cycles_per_measured_ns`.
 
-use super::settings::{JobSettings, of_scheme};
-use super::trace::{Pictured, film};
+mod asked;
+
+use super::settings::of_scheme;
+use super::trace::film;
 use super::{
     Cell, MeasureError, Nearest, Options, Sample, Subject, SubjectCache, Walk, failed, load_imbalance,
     simulated, stage_key, staging,
 };
-use crate::job::animate::{APPROXIMATIONS, Animator, Approximation, Knob, Made, Moving};
-use crate::job::trace::{Costed, Counts, Film, Image, Levels, Look, TileCosts};
+use crate::job::animate::{Animator, Made};
+use crate::job::trace::{Costed, Counts, Film, Image, TileCosts};
 use crate::machine::{Machine, Simulated, Threads};
 use crate::record::THREADS;
 use crate::record::statistics::{FrameTimes, average_pnsr, error_free_pnsr, mean_square_error, pnsr};
 use crate::scene::{Scene, describe};
-use crate::scheme::frames::{self, Upkeep};
+use crate::scheme::frames::Upkeep;
 use crate::scheme::tiles::Scheme;
-use crate::structure::bvh::build::{Builder, Settings};
+use asked::Asked;
 use std::borrow::Borrow;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -55,76 +57,6 @@ struct Exact {
     checksum: u32,
     /// Its colours coded in 8 bits.
     codes: Vec<u8>,
-}
-
-struct Asked {
-    picture: Pictured,
-    levels: Levels,
-    upkeep: String,
-    percent: Option<u32>,
-    /// Its name and its knob.
-    approximation: (String, Option<f64>),
-    lights: Option<u32>,
-    frames: Option<u32>,
-}
-
-impl Asked {
-    fn of(cell: &Cell) -> Result<Self, MeasureError> {
-        let settings = JobSettings::of(cell);
-        let upkeep: Vec<_> = frames::SCHEMES.iter().map(|scheme| (scheme.name, scheme.name)).collect();
-        let asked = Asked {
-            picture: Pictured::of(&settings)?,
-            levels: settings.choice("levels", &[("two", Levels::Two), ("one", Levels::One)])?,
-            upkeep: settings.choice("upkeep", &upkeep)?.to_owned(),
-            percent: settings.parsed("percent")?,
-            approximation: settings.read(
-                "approximation",
-                ("exact".to_owned(), None),
-                &approximations(),
-                approximation,
-            )?,
-            lights: settings.parsed("lights")?,
-            frames: settings.parsed("frames")?,
-        };
-        settings.finish(cell)?;
-        Ok(asked)
-    }
-
-    /// To go through the scene as the cell says, or, exactly, as whatever it says is held against.
-    fn animator(&self, scene: &Scene, exactly: bool) -> Result<Animator, MeasureError> {
-        let builder = Builder::new(self.picture.builder, &Settings::default()).map_err(failed)?;
-        let moving = Moving::new(scene.clone(), builder, self.levels, self.picture.triangle);
-        let percent = self.percent.map(|percent| ("percent".to_owned(), percent.to_string()));
-        let (upkeep, settings) = match exactly {
-            true => ("rebuild_each_frame", BTreeMap::new()),
-            false => (&*self.upkeep, percent.into_iter().collect()),
-        };
-        let upkeep = frames::Scheme::new(upkeep, settings)
-            .map_err(|error| MeasureError::Setting(error.to_string()))?;
-        let (name, knob) =
-            if exactly { ("exact", None) } else { (&*self.approximation.0, self.approximation.1) };
-        let method = Approximation::new(name, knob).expect("it was read");
-        let look = Look { depth: self.picture.depth, ..Look::of(scene) };
-        Ok(Animator::new(moving, upkeep, method, look, self.picture.size, self.picture.tile))
-    }
-}
-
-/// An approximation and its knob, such as `pixel_reuse:4`.
-fn approximation(text: &str) -> Option<(String, Option<f64>)> {
-    let (name, knob) = match text.split_once(':') {
-        Some((name, knob)) => (name, Some(knob.parse().ok()?)),
-        None => (text, None),
-    };
-    Approximation::new(name, knob).map(|_| (name.to_owned(), knob))
-}
-
-/// What there is to choose from, for a message.
-fn approximations() -> String {
-    let all = APPROXIMATIONS.iter().map(|about| {
-        let Knob { about: what, least, most, .. } = about.knob;
-        if least == most { about.name.to_owned() } else { format!("{}:{least}-{most} ({what})", about.name) }
-    });
-    format!("one of: {}", all.collect::<Vec<_>>().join(", "))
 }
 
 pub(super) fn open(

@@ -106,6 +106,7 @@ fn generated_scenes_never_change() {
         ("corner", 0xa102b96e9d7adba9),
         ("spheres-10k", 0x73a2e85b7cd79d0e),
         ("spheres-1m", 0x1c81f95c833c5aef),
+        ("spheres-35m", 0xb80364af5812e6b7),
         ("noise-sphere", 0x6202a746a9127cbf),
         ("cylinder-196", 0xb6cdb833835065fb),
         ("cylinder-596", 0x4ca07a662e28c65c),

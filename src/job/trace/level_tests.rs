@@ -61,7 +61,7 @@ fn flocks() -> Scene {
     let mut some = |count: usize| {
         let one = |number: usize| {
             let radius = random.between(0.0, 0.4) as f32;
-            let shape = if number % 3 == 0 {
+            let shape = if number.is_multiple_of(3) {
                 let [base, tip] = [(); 2].map(|()| point(&mut random, 2.0));
                 Shape::Cone(Cone { base, base_radius: radius, tip, tip_radius: 0.5 * radius })
             } else {

@@ -28,7 +28,7 @@ fn soup(random: &mut SplitMix64, count: usize) -> Mesh {
         }
         positions.extend(corners);
         triangles.push([first, first + 1, first + 2]);
-        if number % 5 == 0 {
+        if number.is_multiple_of(5) {
             triangles.push([first, first + 1, first + 2]);
         }
     }
@@ -91,7 +91,7 @@ fn rays(random: &mut SplitMix64, triangles: &[[Vec3; 3]], from: f32, count: usiz
         let (aim, share) = (random.below(4), random.between(0.0, 1.0) as f32);
         let aim = [a, b.lerp(c, share), (a + b + c) / 3.0, a.lerp(b.lerp(c, 0.3), share)][aim];
         let mut direction = point(random);
-        if number % 7 == 0 {
+        if number.is_multiple_of(7) {
             direction = Vec3::AXES[number / 7 % 3];
         }
         let length = from * 10.0_f32.powf(random.between(-2.0, 1.0) as f32);

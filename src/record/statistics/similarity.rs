@@ -75,8 +75,8 @@ mod tests {
     /// Stripes of some width and a little noise.
     fn stripes(width: usize, height: usize, shift: usize) -> Vec<u8> {
         let pixel = |x: usize, y: usize| {
-            let bright = (x + shift) / 5 % 2 == 0;
-            let noise = ((x + shift) * 31 + y * 17) * 2_654_435_761 >> 7 & 15;
+            let bright = ((x + shift) / 5).is_multiple_of(2);
+            let noise = ((((x + shift) * 31 + y * 17) * 2_654_435_761) >> 7) & 15;
             let code = if bright { 180 } else { 60 } + noise as u8;
             [code, code / 2, 255 - code]
         };

@@ -8,10 +8,11 @@ use super::*;
 /// A triangle on node 1, below node 0; node 0 is turned by rotations from a quarter turn about x to one about y, node 1
 /// moves in steps and is scaled along a cubic. Buffer: corners, times 1 and 3, two rotations, two places, six scales.
 fn text() -> String {
+    const HALF: f32 = std::f32::consts::FRAC_1_SQRT_2;
     let floats: Vec<f32> = [
         &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0][..],
         &[1.0, 3.0],
-        &[0.70710678, 0.0, 0.0, 0.70710678, 0.0, 0.70710678, 0.0, 0.70710678],
+        &[HALF, 0.0, 0.0, HALF, 0.0, HALF, 0.0, HALF],
         &[1.0, 2.0, 3.0, -1.0, 0.0, 5.0],
         // Coming to, scale, leaving: twice.
         &[9.0, 9.0, 9.0, 1.0, 1.0, 1.0, 0.0, 0.5, 1.0],

@@ -56,8 +56,8 @@ pub(crate) fn render(words: &RenderWords) -> Result<()> {
     let unsaid = Look::default();
     let look = Look {
         depth: words.depth,
-        ambient: scene.ambient.unwrap_or(unsaid.ambient),
-        background: scene.background.unwrap_or(unsaid.background),
+        ambient: world.scene().ambient.unwrap_or(unsaid.ambient),
+        background: world.scene().background.unwrap_or(unsaid.background),
     };
     let mut film = Film::new(&team, width, height).context("the picture is too large")?;
     let before = team.now();

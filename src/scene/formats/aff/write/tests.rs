@@ -290,7 +290,8 @@ fn straight_lines_and_steps_are_said_by_splines() {
         f64::from(keys[at].1.x) * (1.0 - share) + f64::from(next.1.x) * share
     };
     let steps = |time: f64| f64::from(keys[keys.iter().rposition(|key| key.0 <= time).unwrap_or(0)].1.x);
-    let cases: [(Curve<Vec3>, &dyn Fn(f64) -> f64); 2] =
+    type Expected<'a> = &'a dyn Fn(f64) -> f64;
+    let cases: [(Curve<Vec3>, Expected<'_>); 2] =
         [(Curve::Linear(keys.clone()), &straight), (Curve::Steps(keys.clone()), &steps)];
     for (curve, expected) in cases {
         let found = back(&to_aff(&moving(curve, Curve::Linear(vec![(0.0, Quat::IDENTITY)])), "out"));

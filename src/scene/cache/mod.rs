@@ -3,9 +3,9 @@
 //!
 //! Invariant: what comes out of the cache is, bit for bit, what parsing the file would give, or nothing.
 //! 1. The kept file is found by the scene's absolute path, and says which files it was made from: name,
-//!    size and time of last change of the scene's own, for glTF of its buffers, for URDF of its meshes and of
-//!    all files that were looked for on the way to them, found or not. If one of them is another now, or is
-//!    there that was not, it is stale.
+//!    size and time of last change of the scene's own, for glTF of its buffers, for AFF of what it includes,
+//!    for URDF of its meshes and of all files that were looked for on the way to them, found or not. If one of
+//!    them is another now, or is there that was not, it is stale.
 //! 2. It ends with a checksum, and begins with the version of its layout and of this program: damaged,
 //!    cut and foreign files are passed over, and what was decoded is validated like a parsed scene.
 //! 3. It is written under a temporary name and renamed, so nobody sees half of it, and of two

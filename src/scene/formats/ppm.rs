@@ -1,5 +1,7 @@
 //! PPM (netpbm): pictures as text (`P3`) or bytes (`P6`), up to 65,535 shades a colour.
 
+use std::borrow::Cow;
+
 use super::super::Texture;
 use super::texture::{Decoded, check_size};
 
@@ -18,20 +20,20 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
     }
     let count = 3 * width * height;
     let shade = |value: usize| ((value.min(most) * 255 + most / 2) / most) as u8;
-    let samples: Vec<u8> = if is_text {
+    let samples: Cow<'_, [u8]> = if is_text {
         // Each takes a digit and a blank, but for the last one's.
         if numbers.rest.len() + 1 < 2 * count {
             return Err(CUT.to_owned());
         }
         let read = (0..count).map(|_| Ok(shade(numbers.next()? as usize)));
-        read.collect::<Result<_, String>>()?
+        Cow::Owned(read.collect::<Result<_, String>>()?)
     } else {
         // A single blank ends the header.
         let body = numbers.rest.get(1..).unwrap_or_default();
         let each = if most < 256 { 1 } else { 2 };
         let body = body.get(..count * each).ok_or(CUT)?;
         match (each, most) {
-            (1, 255) => body.to_vec(),
+            (1, 255) => Cow::Borrowed(body),
             (1, _) => body.iter().map(|value| shade(usize::from(*value))).collect(),
             _ => body.as_chunks().0.iter().map(|value| shade(u16::from_be_bytes(*value).into())).collect(),
         }

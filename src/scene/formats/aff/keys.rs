@@ -1,6 +1,6 @@
 //! `k`: key frames of a transform.
 
-use glam::{Quat, Vec3};
+use glam::Quat;
 
 use super::super::super::{Curve, Motion, SplineKey};
 use super::parse::rotation;

@@ -180,10 +180,13 @@ impl<'a> Ring<'a> {
             return;
         }
         self.looks -= 1;
+        let within = |p: f64, a: f64, b: f64, c: f64| (a.min(b).min(c)..=a.max(b).max(c)).contains(&p);
         let is_in_the_way = |other: &usize| {
             let p = self.flat[*other];
+            // Their box first: most are outside of that.
+            let is_near = within(p.x, a.x, b.x, c.x) && within(p.y, a.y, b.y, c.y);
             let is_within = || turn([a, b, p]) >= 0.0 && turn([b, c, p]) >= 0.0 && turn([c, a, p]) >= 0.0;
-            p != a && p != b && p != c && is_within()
+            is_near && p != a && p != b && p != c && is_within()
         };
         self.is_ear[corner] = !self.dull.iter().any(is_in_the_way);
         if self.is_ear[corner] && !was {

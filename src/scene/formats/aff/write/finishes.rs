@@ -41,7 +41,8 @@ impl Out {
     pub(super) fn tell_finishes(&mut self, scene: &Scene) {
         let used = scene.materials.iter().zip(&self.finishes.used).filter(|(_, used)| **used);
         let used: Vec<&Material> = used.map(|(material, _)| material).collect();
-        let kinds: [(fn(&Material) -> bool, &str); 4] = [
+        type Is = fn(&Material) -> bool;
+        let kinds: [(Is, &str); 4] = [
             (|m| m.highlight != m.mirror, "highlight otherwise than they mirror: written as they mirror"),
             (|m| m.fresnel, "mirror the more the flatter they are seen: written as seen from above"),
             (|m| m.absorption != Vec3::ZERO, "absorb light inside: left out"),

@@ -3,8 +3,6 @@
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use glam::Vec3;
-
 use super::super::super::super::{Bend, Mesh, Scene};
 use super::Out;
 
@@ -81,9 +79,9 @@ impl Out {
         });
         let _ = writeln!(self.text, "triangles {}", triangles.len());
         for triangle in triangles {
-            let mut corners = positions.new(vertices(*triangle)).to_vec();
-            corners.extend(by_normal.iter().flat_map(|used| used.new(normals(*triangle))));
-            corners.extend(by_coordinate.iter().flat_map(|used| used.new(coordinates(*triangle))));
+            let mut corners = positions.renumbered(vertices(*triangle)).to_vec();
+            corners.extend(by_normal.iter().flat_map(|used| used.renumbered(normals(*triangle))));
+            corners.extend(by_coordinate.iter().flat_map(|used| used.renumbered(coordinates(*triangle))));
             for corner in corners {
                 let _ = write!(self.text, "{corner} ");
             }
@@ -138,7 +136,7 @@ impl Used {
         Self { order: used, new }
     }
 
-    fn new(&self, corners: [u32; 3]) -> [u32; 3] {
+    fn renumbered(&self, corners: [u32; 3]) -> [u32; 3] {
         corners.map(|corner| if self.new.is_empty() { corner } else { self.new[&corner] })
     }
 }

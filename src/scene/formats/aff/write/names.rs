@@ -43,6 +43,5 @@ fn new(name: &str, taken: &mut HashSet<String>) -> String {
     let numbered = (2u32..).map(|number| format!("{name}_{number}"));
     let mut names = std::iter::once(name.to_owned()).chain(numbered);
     // Of so many names one is free.
-    let free = names.find(|name| taken.insert(name.to_lowercase())).unwrap_or_default();
-    free
+    names.find(|name| taken.insert(name.to_lowercase())).unwrap_or_default()
 }

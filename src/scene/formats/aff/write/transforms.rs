@@ -9,6 +9,8 @@ use super::Out;
 
 /// The greatest cosine between axes that counts as none: rounding to f32 makes about 1e-7.
 const SQUARE: f64 = 1e-6;
+/// The least share of the longest axis that another must reach to have a direction of its own.
+const TELLING: f64 = 1e-9;
 
 impl Out {
     /// Opens a transform, and returns how many braces that took: none if nothing is transformed.
@@ -71,22 +73,20 @@ impl Parts {
     }
 }
 
-/// The turn that lays the axes in these directions, which are square to one another, and their lengths; of what is
-/// mirrored one is below 0.
+/// The turn that lays the axes in these directions, which are square to one another, and how far each then reaches;
+/// of what is mirrored one reaches backwards.
 fn stretched(axes: [DVec3; 3]) -> (DQuat, DVec3) {
     let lengths = axes.map(DVec3::length);
-    // The two longest tell all three directions, also where one is too short to have one.
-    let shortest = (0..3).fold(0, |least, axis| if lengths[axis] < lengths[least] { axis } else { least });
-    let (next, last) = ((shortest + 1) % 3, (shortest + 2) % 3);
-    let mut units = axes;
-    units[next] = axes[next].try_normalize().unwrap_or_else(|| {
-        axes[last].try_normalize().map_or(DVec3::AXES[next], DVec3::any_orthonormal_vector)
-    });
-    let rest = axes[last] - units[next] * units[next].dot(axes[last]);
-    units[last] = rest.try_normalize().unwrap_or_else(|| units[next].any_orthonormal_vector());
-    units[shortest] = units[next].cross(units[last]);
-    let mut scale = DVec3::from(lengths);
-    scale[shortest] *= if units[shortest].dot(axes[shortest]) < 0.0 { -1.0 } else { 1.0 };
+    let mut order = [0, 1, 2];
+    order.sort_by(|a, b| lengths[*b].total_cmp(&lengths[*a]));
+    // The two longest tell all three directions. What is far shorter than the longest has none, but that of rounding.
+    let [longest, middle, shortest] = order;
+    let mut units = [axes[longest].normalize_or(DVec3::AXES[longest]); 3];
+    let rest = axes[middle] - units[longest] * units[longest].dot(axes[middle]);
+    let has_direction = rest.length() > TELLING * lengths[longest];
+    units[middle] = if has_direction { rest.normalize() } else { units[longest].any_orthonormal_vector() };
+    units[shortest] = units[(shortest + 1) % 3].cross(units[(shortest + 2) % 3]);
+    let scale = DVec3::from_array([0, 1, 2].map(|axis| units[axis].dot(axes[axis])));
     (DQuat::from_mat3(&DMat3::from_cols(units[0], units[1], units[2])), scale)
 }
 

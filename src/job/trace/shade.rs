@@ -116,7 +116,7 @@ impl<'a> Tracer<'a> {
     /// What ambient light and the lights make of a surface.
     fn local(&self, bounce: &Bounce, surface: &Surface<'_>, kept: Vec3, counts: &mut Counts) -> Vec3 {
         let (diffuse, highlight) = (surface.diffuse * kept, surface.material.highlight);
-        let mut colour = diffuse * self.look.ambient;
+        let mut colour = surface.ambient * kept * self.look.ambient;
         if diffuse == Vec3::ZERO && highlight == Vec3::ZERO {
             return colour;
         }

@@ -26,6 +26,8 @@ pub(super) struct Surface<'a> {
     pub(super) material: &'a Material,
     /// Diffuse colour, with the texture.
     pub(super) diffuse: Vec3,
+    /// What it scatters of ambient light, with the texture.
+    pub(super) ambient: Vec3,
     /// How far from here rays that leave start, in metres.
     pub(super) apart: f32,
 }
@@ -70,8 +72,11 @@ impl World {
             .zip(coordinates)
             .map(|(texture, [a, b, c])| sample(texture, a * weights[0] + b * weights[1] + c * weights[2]));
         let greatest = corners.iter().fold(0.0, |most: f32, corner| most.max(corner.abs().max_element()));
-        let diffuse = material.diffuse * colour.unwrap_or(Vec3::ONE);
-        Surface { point, flat, smooth: smooth.unwrap_or(flat), material, diffuse, apart: APART * greatest }
+        let colour = colour.unwrap_or(Vec3::ONE);
+        let (diffuse, ambient) =
+            (material.diffuse * colour, material.ambient.unwrap_or(material.diffuse) * colour);
+        let (smooth, apart) = (smooth.unwrap_or(flat), APART * greatest);
+        Surface { point, flat, smooth, material, diffuse, ambient, apart }
     }
 
     /// On a sphere or cone, in the world or in a space that `transform` takes to it.
@@ -109,7 +114,8 @@ impl World {
         let normal = normal.unwrap_or_else(|| -ray.direction.normalize_or_zero());
         let (material, apart) = (self.material(primitive.material), APART * greatest);
         let (point, diffuse) = (point.as_vec3(), material.diffuse);
-        Surface { point, flat: normal, smooth: normal, material, diffuse, apart }
+        let ambient = material.ambient.unwrap_or(diffuse);
+        Surface { point, flat: normal, smooth: normal, material, diffuse, ambient, apart }
     }
 }
 

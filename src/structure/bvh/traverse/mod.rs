@@ -15,8 +15,7 @@ pub use count::RayCounts;
 pub(super) use count::{Count, Uncounted};
 pub use list::TriangleList;
 use nearest::Nearest;
-pub(super) use packet::RAYS;
-use packet::together as walk_together;
+use packet::{RAYS, together as walk_together};
 use single::through as walk_single;
 
 use super::{Intersector, WideBvh};

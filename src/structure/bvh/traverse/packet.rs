@@ -16,7 +16,7 @@ use crate::geometry::lanes::Lanes;
 use std::mem::MaybeUninit;
 
 /// Rays a packet.
-pub(in crate::structure::bvh) const RAYS: usize = 16;
+pub(super) const RAYS: usize = 16;
 
 /// How many nodes and blocks a packet may test before its rays go on their own: about as many as they would take if
 /// they had nothing in common.

@@ -1,6 +1,5 @@
 //! A ray made ready for tests.
 
-use super::probe::BEYOND;
 use super::scale::{Scale, inverse, to_one};
 use crate::geometry::Ray;
 use crate::geometry::lanes::Lanes;
@@ -89,13 +88,6 @@ impl Aim {
             axes,
             octant: direction.is_negative_bitmask() as u8,
         })
-    }
-
-    /// How far a box may begin, in its lengths, that has a point at or before `t`, as the ray it was made of counts.
-    #[inline]
-    pub(crate) fn reach(&self, t: f32) -> f32 {
-        let reach = (f64::from(t) - f64::from(self.start)) / f64::from(self.stretch);
-        ((reach * (1.0 + BEYOND)) as f32).min(f32::MAX)
     }
 
     /// A distance along it as the ray it was made of counts.

@@ -28,7 +28,7 @@ pub use watertight::Watertight;
 
 pub(crate) use aim::{Aim, Beam};
 pub(crate) use probe::Probe;
-pub(crate) use slab::{Sight, slab};
+pub(crate) use slab::slab;
 pub(crate) use span::{Span, Spread};
 
 use super::lanes::Lanes;

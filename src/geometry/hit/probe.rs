@@ -1,17 +1,17 @@
 //! A ray as hierarchies of boxes see it whose items are in spaces of their own: bounds of where it is, so that what is
 //! rounded on the way into those spaces loses no hit.
 
+use super::Scale;
 use super::aim::{LEAST_PART, rows, spread};
-use super::{Scale, Sight};
 use crate::geometry::FineRay;
 use crate::geometry::lanes::Lanes;
 use glam::{DVec3, Vec3};
 
 /// By how much distances are rounded outwards: twice what the box test of triangles takes, so that a box around their
 /// boxes is never passed over for its own rounding.
-pub(super) const SLACK: f64 = 1.0 / (1 << 19) as f64;
+const SLACK: f64 = 1.0 / (1 << 19) as f64;
 /// By how much farther than a hit boxes may begin and still be looked into: of hits equally near all are to be seen.
-pub(super) const BEYOND: f64 = 1.0 / (1 << 18) as f64;
+const BEYOND: f64 = 1.0 / (1 << 18) as f64;
 /// What is at least taken for the rounding of an origin, as a share of the greatest coordinate there is.
 const LEAST: f64 = 1.0 / (1u64 << 48) as f64;
 
@@ -111,9 +111,14 @@ pub(crate) struct Feeler<L> {
     near: L,
 }
 
-impl<L: Lanes> Sight<L> for Feeler<L> {
+impl<L: Lanes> Feeler<L> {
+    /// From where to where the ray may be between the planes of boxes, as [`super::slab`]: those it comes to `first` and
+    /// `last`, by axis. The first exceeds the second if nowhere.
+    ///
+    /// # Safety
+    /// The processor has the lanes' vector unit.
     #[inline(always)]
-    unsafe fn slab(&self, reach: L, first: [L; 3], last: [L; 3]) -> [L; 2] {
+    pub(crate) unsafe fn slab(&self, reach: L, first: [L; 3], last: [L; 3]) -> [L; 2] {
         // SAFETY: the processor is the caller's.
         unsafe {
             // A NaN among the first arguments is passed over.
@@ -123,9 +128,7 @@ impl<L: Lanes> Sight<L> for Feeler<L> {
             [enters, leaves]
         }
     }
-}
 
-impl<L: Lanes> Feeler<L> {
     #[inline(always)]
     unsafe fn enters(&self, planes: [L; 3], axis: usize) -> L {
         // SAFETY: the processor is the caller's.

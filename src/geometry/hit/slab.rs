@@ -3,16 +3,6 @@
 use super::Beam;
 use crate::geometry::lanes::Lanes;
 
-/// What tests boxes: a ray with room for error, or several.
-pub(crate) trait Sight<L>: Copy {
-    /// From where to where it may be between the planes of boxes, those that rays of this way come to `first` and `last`,
-    /// by axis, and not beyond `reach`. The first exceeds the second if nowhere.
-    ///
-    /// # Safety
-    /// The processor has the lanes' vector unit.
-    unsafe fn slab(&self, reach: L, first: [L; 3], last: [L; 3]) -> [L; 2];
-}
-
 /// From where to where rays are between the planes of boxes: by axis, those that rays of this way come to `first` and
 /// `last`; within `reach`, an interval without a NaN. The first exceeds the second if nowhere.
 ///

@@ -1,8 +1,6 @@
 //! What rays that go much the same way have in common.
 
-use super::Sight;
 use super::aim::{Aim, rises, rows, spread};
-use super::probe::SLACK;
 use crate::geometry::lanes::Lanes;
 use glam::Vec3A;
 
@@ -61,24 +59,6 @@ impl Span {
         })
     }
 
-    /// The same of rays that may be anywhere within `error` of where they are said to be, along each axis: a share of
-    /// the sum of their origins' and the scale's greatest coordinates; with the slack of a [`super::Probe`].
-    pub(crate) fn widened(self, error: f64) -> Self {
-        let greatest = self.first_origin.abs().max(self.last_origin.abs()).max_element();
-        let room = error as f32 * (greatest + 2.0);
-        let out = Vec3A::select(self.rises.into(), Vec3A::splat(room), Vec3A::splat(-room));
-        // The rates have half of it already.
-        let slack = 0.5 * SLACK as f32;
-        Self {
-            first_origin: self.first_origin + out,
-            last_origin: self.last_origin - out,
-            first_rate: self.first_rate.map(|rate| rate * (1.0 - slack)),
-            last_rate: self.last_rate.map(|rate| rate * (1.0 + slack)),
-            near: self.near * (1.0 - slack),
-            ..self
-        }
-    }
-
     /// As [`super::Beam::rows`].
     pub(crate) fn rows(&self) -> [usize; 3] {
         rows(self.rises)
@@ -111,14 +91,6 @@ pub(crate) struct Spread<L> {
     first_rate: [[L; 3]; 2],
     last_rate: [[L; 3]; 2],
     near: L,
-}
-
-impl<L: Lanes> Sight<L> for Spread<L> {
-    #[inline(always)]
-    unsafe fn slab(&self, reach: L, first: [L; 3], last: [L; 3]) -> [L; 2] {
-        // SAFETY: the processor is the caller's.
-        unsafe { Spread::slab(self, reach, first, last) }
-    }
 }
 
 impl<L: Lanes> Spread<L> {

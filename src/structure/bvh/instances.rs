@@ -15,9 +15,9 @@
 
 use super::build::{BuildError, Builder, Input};
 use super::place::placed_box;
-use super::traverse::{Count, RAYS, Uncounted};
+use super::traverse::{Count, Uncounted};
 use super::{BinaryBvh, BoxBvh, Intersector, Place, RayCounts, WideBvh};
-use crate::geometry::hit::{Aim, TriangleTest, Watertight};
+use crate::geometry::hit::{TriangleTest, Watertight};
 use crate::geometry::{Aabb, FineRay, Hit, Ray};
 use crate::scene::Mesh;
 use glam::{Affine3A, Vec3};
@@ -227,41 +227,6 @@ impl<T: TriangleTest> Instances<T> {
     }
 }
 
-impl<T: TriangleTest> Instances<T> {
-    /// The nearest hits of a packet. False, and no hits, if its rays are to go on their own.
-    fn packet(&self, rays: &[Ray], hits: &mut [Option<Hit>]) -> bool {
-        // What is left over at the end is not worth it.
-        if rays.len() < RAYS / 2 || rays.iter().any(|ray| ray.near < 0.0) {
-            return false;
-        }
-        let Some(first) = Aim::new(&rays[0], self.top.scale()) else { return false };
-        let mut aims = [first; RAYS];
-        for (aim, ray) in aims.iter_mut().zip(rays) {
-            match Aim::new(ray, self.top.scale()) {
-                Some(made) => *aim = made,
-                None => return false,
-            }
-        }
-        let mut own = [rays[0]; RAYS];
-        let mut found = [None; RAYS];
-        let count = rays.len();
-        hits.fill(None);
-        self.top.walk_together(&aims, self.error, |place| {
-            let standing = &self.stand[place];
-            for ((own, ray), hit) in own.iter_mut().zip(rays).zip(&*hits) {
-                *own = standing.take_in(&Ray { far: hit.map_or(ray.far, |hit: Hit| hit.t), ..*ray });
-            }
-            self.bvh(standing).closest_coherent(&own[..count], &mut found[..count]);
-            let mut reach: f32 = 0.0;
-            for (((nearest, found), ray), aim) in hits.iter_mut().zip(found).zip(rays).zip(&aims) {
-                standing.offer(nearest, found);
-                reach = reach.max(aim.reach(nearest.map_or(ray.far, |hit| hit.t)));
-            }
-            reach
-        })
-    }
-}
-
 impl Standing {
     /// Takes a hit of its mesh if that is nearer than what is known, or as near and of a lower number.
     #[inline]
@@ -294,17 +259,6 @@ impl<T: TriangleTest> Intersector for Instances<T> {
             if met { f32::NEG_INFINITY } else { far }
         });
         met
-    }
-
-    fn closest_coherent(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        assert_eq!(rays.len(), hits.len(), "a place for the hit of each ray");
-        for (rays, hits) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)) {
-            if !self.packet(rays, hits) {
-                for (ray, hit) in rays.iter().zip(hits) {
-                    *hit = self.closest(ray);
-                }
-            }
-        }
     }
 }
 

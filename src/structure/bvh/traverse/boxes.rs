@@ -1,12 +1,11 @@
-//! One ray through boxes, whatever is in them, or several rays together.
+//! One ray through boxes, whatever is in them.
 
 use super::super::BoxBvh;
 use super::super::wide::WIDTH;
-use super::RAYS;
 use super::count::{Count, Uncounted};
 use super::waiting::{PLACES, Stack};
 use crate::geometry::FineRay;
-use crate::geometry::hit::{Aim, Probe, Sight, Span};
+use crate::geometry::hit::Probe;
 use crate::geometry::lanes::{Kind, Lanes};
 use std::mem::MaybeUninit;
 
@@ -35,90 +34,58 @@ impl BoxBvh {
     ) {
         let Some(probe) = Probe::new(ray, self.scale, error) else { return };
         let mut far = ray.far;
-        alone(self, &probe, probe.reach(far), count, |place| {
+        on_unit(self, &probe, probe.reach(far), count, |place| {
             far = item(place, far);
             (far >= ray.near).then(|| probe.reach(far))
         });
     }
+}
 
-    /// Goes through the items in whose boxes some rays may end, aims in this hierarchy's scale that none is beside by
-    /// more than `error`, as above; none has a `near` below 0. `item` is told an item's place in the order and answers
-    /// how far the farthest still reaches, as [`Aim::reach`] has it. False, and nothing was done, if the rays do not go
-    /// together.
-    pub(in crate::structure::bvh) fn walk_together(
-        &self,
-        aims: &[Aim; RAYS],
-        error: f64,
-        mut item: impl FnMut(usize) -> f32,
-    ) -> bool {
-        let Some(span) = Span::of(aims) else { return false };
-        let span = span.widened(error);
-        together(self, &span, span.far, &mut Uncounted, |place| Some(item(place)));
-        true
+#[inline]
+fn on_unit<C: Count>(
+    bvh: &BoxBvh,
+    probe: &Probe,
+    reach: f32,
+    count: &mut C,
+    item: impl FnMut(usize) -> Option<f32>,
+) {
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,popcnt,lzcnt")]
+    fn avx2<C: Count>(
+        bvh: &BoxBvh,
+        probe: &Probe,
+        reach: f32,
+        count: &mut C,
+        item: impl FnMut(usize) -> Option<f32>,
+    ) {
+        // SAFETY: this function has the feature.
+        unsafe { through::<crate::geometry::lanes::x86::Lanes8, C>(bvh, probe, reach, count, item) }
+    }
+    match bvh.unit.0 {
+        // SAFETY: a `Unit` is only made where it is there, this one where the bit instructions are too.
+        #[cfg(target_arch = "x86_64")]
+        Kind::Avx2 => unsafe { avx2(bvh, probe, reach, count, item) },
+        // SAFETY: every x86-64 processor has the unit.
+        #[cfg(target_arch = "x86_64")]
+        Kind::Sse2 => unsafe {
+            through::<crate::geometry::lanes::x86::Lanes4, C>(bvh, probe, reach, count, item)
+        },
+        // SAFETY: every 64-bit ARM processor with an operating system has the unit.
+        #[cfg(target_arch = "aarch64")]
+        Kind::Neon => unsafe {
+            through::<crate::geometry::lanes::arm::Lanes4, C>(bvh, probe, reach, count, item)
+        },
+        // SAFETY: one lane needs no unit.
+        Kind::Scalar => unsafe { through::<f32, C>(bvh, probe, reach, count, item) },
     }
 }
-
-/// Declares a function that walks, on the unit of the hierarchy, with the lanes of what is seen.
-macro_rules! on_unit_of {
-    (fn $name:ident($sight:ident: &$type:ty)) => {
-        #[inline]
-        fn $name<C: Count>(
-            bvh: &BoxBvh,
-            $sight: &$type,
-            reach: f32,
-            count: &mut C,
-            item: impl FnMut(usize) -> Option<f32>,
-        ) {
-            #[cfg(target_arch = "x86_64")]
-            #[target_feature(enable = "avx2,bmi1,bmi2,popcnt,lzcnt")]
-            fn avx2<C: Count>(
-                bvh: &BoxBvh,
-                $sight: &$type,
-                reach: f32,
-                count: &mut C,
-                item: impl FnMut(usize) -> Option<f32>,
-            ) {
-                use crate::geometry::lanes::x86::Lanes8;
-                // SAFETY: this function has the feature.
-                unsafe {
-                    through::<Lanes8, _, C>(bvh, $sight.spread::<Lanes8>(), $sight.rows(), reach, count, item)
-                }
-            }
-            match bvh.unit.0 {
-                // SAFETY: a `Unit` is only made where it is there, this one where the bit instructions are too.
-                #[cfg(target_arch = "x86_64")]
-                Kind::Avx2 => unsafe { avx2(bvh, $sight, reach, count, item) },
-                // SAFETY: every x86-64 processor has the unit.
-                #[cfg(target_arch = "x86_64")]
-                Kind::Sse2 => unsafe {
-                    use crate::geometry::lanes::x86::Lanes4;
-                    through::<Lanes4, _, C>(bvh, $sight.spread::<Lanes4>(), $sight.rows(), reach, count, item)
-                },
-                // SAFETY: every 64-bit ARM processor with an operating system has the unit.
-                #[cfg(target_arch = "aarch64")]
-                Kind::Neon => unsafe {
-                    use crate::geometry::lanes::arm::Lanes4;
-                    through::<Lanes4, _, C>(bvh, $sight.spread::<Lanes4>(), $sight.rows(), reach, count, item)
-                },
-                // SAFETY: one lane needs no unit.
-                Kind::Scalar => unsafe {
-                    through::<f32, _, C>(bvh, $sight.spread::<f32>(), $sight.rows(), reach, count, item)
-                },
-            }
-        }
-    };
-}
-
-on_unit_of!(fn alone(probe: &Probe));
-on_unit_of!(fn together(span: &Span));
 
 /// # Safety
 /// The processor has the lanes' vector unit.
 #[inline(always)]
-unsafe fn through<L: Lanes, S: Sight<L>, C: Count>(
+unsafe fn through<L: Lanes, C: Count>(
     bvh: &BoxBvh,
-    sight: S,
-    rows: [usize; 3],
+    probe: &Probe,
     reach: f32,
     count: &mut C,
     item: impl FnMut(usize) -> Option<f32>,
@@ -126,20 +93,18 @@ unsafe fn through<L: Lanes, S: Sight<L>, C: Count>(
     let mut places = [const { MaybeUninit::uninit() }; PLACES];
     if bvh.waiting <= PLACES {
         // SAFETY: the processor is the caller's.
-        return unsafe { walk::<L, S, C>(bvh, sight, rows, reach, count, Stack::of(&mut places), item) };
+        return unsafe { walk::<L, C>(bvh, probe, reach, count, Stack::of(&mut places), item) };
     }
     let mut many = vec![MaybeUninit::uninit(); bvh.waiting];
     // SAFETY: as above.
-    unsafe { walk::<L, S, C>(bvh, sight, rows, reach, count, Stack::of(&mut many), item) }
+    unsafe { walk::<L, C>(bvh, probe, reach, count, Stack::of(&mut many), item) }
 }
 
-/// The walk itself: each item answers how far boxes may begin from then on, or that it is over. In addition: `rows` are
-/// those of what is seen, and `stack` has as many places as may wait.
+/// The walk itself: each item answers how far boxes may begin from then on, or that it is over. In addition: `stack` has as many places as may wait.
 #[inline(always)]
-unsafe fn walk<L: Lanes, S: Sight<L>, C: Count>(
+unsafe fn walk<L: Lanes, C: Count>(
     bvh: &BoxBvh,
-    sight: S,
-    rows: [usize; 3],
+    probe: &Probe,
     mut reach: f32,
     count: &mut C,
     mut stack: Stack<'_>,
@@ -148,6 +113,9 @@ unsafe fn walk<L: Lanes, S: Sight<L>, C: Count>(
     if bvh.nodes.is_empty() {
         return;
     }
+    // SAFETY: the processor is the caller's.
+    let feeler = unsafe { probe.spread::<L>() };
+    let rows = probe.rows();
     let mut at = bvh.root;
     'next: loop {
         while at.blocks() == 0 {
@@ -165,7 +133,7 @@ unsafe fn walk<L: Lanes, S: Sight<L>, C: Count>(
                         node.row(rows[1] ^ 1, from),
                         node.row(rows[2] ^ 1, from),
                     ];
-                    let [first, last] = sight.slab(L::splat(reach), first, last);
+                    let [first, last] = feeler.slab(L::splat(reach), first, last);
                     hit |= last.at_least(first) << from;
                     first.store(&mut enters, from);
                 }

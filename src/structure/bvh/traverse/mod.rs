@@ -15,8 +15,7 @@ mod walk;
 pub use count::RayCounts;
 pub(super) use count::{Count, Uncounted};
 pub use list::TriangleList;
-pub(super) use packet::RAYS;
-use packet::{Together, together as walk_together};
+use packet::{RAYS, Together, together as walk_together};
 use single::through as walk_single;
 
 use super::{Intersector, WideBvh};

@@ -21,7 +21,7 @@ use std::mem::MaybeUninit;
 use std::ops::ControlFlow;
 
 /// Rays a packet.
-pub(in crate::structure::bvh) const RAYS: usize = 16;
+pub(super) const RAYS: usize = 16;
 
 /// How many nodes and blocks a packet may test before its rays go on by themselves. Where triangles are so fine that no
 /// two rays meet the same, 16 take some hundred and seventy of both by themselves; those worth keeping together take

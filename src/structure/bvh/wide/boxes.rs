@@ -33,11 +33,6 @@ impl BoxBvh {
         (Self { scale, root, nodes, waiting, unit: Unit::best() }, places.order)
     }
 
-    /// The lengths it counts in.
-    pub(in crate::structure::bvh) fn scale(&self) -> Scale {
-        self.scale
-    }
-
     /// How many bytes its nodes take.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.nodes[..])

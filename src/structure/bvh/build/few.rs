@@ -50,7 +50,8 @@ pub(super) unsafe fn weigh_few_with<L: Lanes>(items: &[Item]) -> Parting {
         let join = |one: (L, u32), other: (L, u32)| (one.0.union(other.0), one.1 + other.1);
         let mut weigh = |left: usize, sides: [(L, u32); 2]| {
             let [one, other] = sides.map(|(bounds, weight)| bounds.half_area() * weight as f32);
-            if one + other < best.cost {
+            // The first way stands where no cost is a number, of boxes whose areas overflow.
+            if best.left == 0 || one + other < best.cost || best.cost.is_nan() {
                 (best.cost, best.left) = (one + other, left);
                 sides.into_iter().zip(&mut best.bounds).for_each(|((side, _), bounds)| side.store(bounds));
             }

@@ -255,7 +255,8 @@ unsafe fn sweep_with<L: Lanes>(items: &[Item], room: &mut [(Box8, f32)]) -> (usi
             around = around.union(L::load_item(&items[at - 1]));
             let (right, cost) = &room[at];
             let cost = around.half_area() * at as f32 + cost;
-            if cost < best.2 {
+            // The first cut stands where no cost is a number, of boxes whose areas overflow.
+            if at == 1 || cost < best.2 || best.2.is_nan() {
                 around.store(&mut best.1[0]);
                 (best.0, best.1[1], best.2) = (at, *right, cost);
             }

@@ -69,14 +69,5 @@ fn picture(
             None => texture::read(source, &unescape(uri)),
         },
     };
-    match read {
-        Ok(texture) => {
-            scene.textures.push(texture);
-            Some(scene.textures.len() as u32 - 1)
-        }
-        Err(warning) => {
-            scene.warnings.push(warning);
-            None
-        }
-    }
+    texture::take(scene, read)
 }

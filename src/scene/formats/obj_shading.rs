@@ -148,16 +148,10 @@ impl Library {
     }
 
     fn texture(&mut self, source: &Source, name: &str, scene: &mut Scene) -> Option<u32> {
-        *self.textures.entry(name.to_owned()).or_insert_with(|| match texture::read(source, name) {
-            Ok(texture) => {
-                scene.textures.push(texture);
-                Some(scene.textures.len() as u32 - 1)
-            }
-            Err(warning) => {
-                scene.warnings.push(warning);
-                None
-            }
-        })
+        *self
+            .textures
+            .entry(name.to_owned())
+            .or_insert_with(|| texture::take(scene, texture::read(source, name)))
     }
 
     fn find(&mut self, name: &str, scene: &mut Scene) -> u32 {

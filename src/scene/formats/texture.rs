@@ -7,8 +7,8 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use super::super::Texture;
 use super::super::source::Source;
+use super::super::{Scene, Texture};
 use super::ppm;
 
 /// The greatest width and height a picture may have: a small file may unpack to any size.
@@ -26,6 +26,20 @@ pub(super) fn read(source: &Source, name: &str) -> Result<Texture, String> {
     let bytes =
         source.neighbour(name).map_err(|error| format!("texture {name:?} cannot be read: {error}"))?;
     decode(name, &bytes)
+}
+
+/// Gives a scene a picture that was read, and tells its number there; one that could not be is a warning.
+pub(super) fn take(scene: &mut Scene, read: Result<Texture, String>) -> Option<u32> {
+    match read {
+        Ok(texture) => {
+            scene.textures.push(texture);
+            Some(scene.textures.len() as u32 - 1)
+        }
+        Err(warning) => {
+            scene.warnings.push(warning);
+            None
+        }
+    }
 }
 
 /// Decodes a picture; what is transparent in it is taken as it would be if it were not.

@@ -57,16 +57,7 @@ impl Looks {
             Some(name) => texture::read(source, &name),
             None => Err(format!("texture {name:?} lies outside of the scene's folder: it is not read")),
         };
-        let number = match read {
-            Ok(texture) => {
-                scene.textures.push(texture);
-                Some(scene.textures.len() as u32 - 1)
-            }
-            Err(warning) => {
-                scene.warnings.push(warning);
-                None
-            }
-        };
+        let number = texture::take(scene, read);
         self.textures.insert(name.to_owned(), number);
         number
     }

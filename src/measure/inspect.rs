@@ -52,7 +52,7 @@ pub fn scene(name: &str) -> Result<String, MeasureError> {
             ),
         );
     }
-    scene.warnings.iter().for_each(|warning| line("not there", warning.clone()));
+    scene.warnings.iter().for_each(|warning| line("warning", warning.clone()));
     match (holds.bounds_min, holds.bounds_max) {
         (Some(min), Some(max)) => line("bounds", format!("{min:?} to {max:?}")),
         _ => line("bounds", "none: there is nothing to see".to_owned()),

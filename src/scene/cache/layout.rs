@@ -8,7 +8,7 @@
 //! roots u32
 //! nodes:   name, parent u32, mesh u32, children u32, transform 12 f32
 //! meshes:  name, positions 3 f32, triangles 3 u32, shading (`look.rs`)
-//! materials, textures, lights, primitives, view, background, ambient light, warnings (`look.rs`)
+//! materials, textures, lights, primitives, flocks, view, background, ambient light, warnings (`look.rs`)
 //! animation (`motion.rs`)
 //! checksum u32 (CRC-32 of all before it)
 //! ```
@@ -24,7 +24,7 @@ use crate::scene::{Mesh, Node, Scene};
 
 const MAGIC: &[u8] = b"apportion scene\n";
 /// To be raised whenever this layout changes, or a reader comes to read a file otherwise than before.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// Stands for no node and for no mesh.
 const NONE: u32 = u32::MAX;
 

@@ -1,4 +1,5 @@
-//! The layout of what a kept scene is seen with: materials, textures, lights, primitives, the shading of meshes.
+//! The layout of what a kept scene is seen with: materials, textures, lights, primitives, flocks, the shading of
+//! meshes.
 
 use glam::{Vec2, Vec3};
 
@@ -6,7 +7,7 @@ use super::layout::{Reader, put, put_count, put_words};
 use crate::geometry::Sphere;
 use crate::geometry::hit::Cone;
 use crate::scene::{
-    Corners, Material, Materials, PointLight, Primitive, Scene, Shading, Shape, Texture, View,
+    Corners, Flock, Material, Materials, PointLight, Primitive, Scene, Shading, Shape, Texture, View,
 };
 
 /// Stands for no texture and for no material.
@@ -37,8 +38,27 @@ pub(super) fn put_scene(out: &mut Vec<u8>, scene: &Scene) -> Option<()> {
         put_floats(out, &light.position.to_array());
         put_floats(out, &light.colour.to_array());
     }
-    put_count(out, scene.primitives.len())?;
-    for primitive in &scene.primitives {
+    put_primitives(out, &scene.primitives)?;
+    put_count(out, scene.flocks.len())?;
+    for flock in &scene.flocks {
+        put(out, flock.name.bytes())?;
+        put_primitives(out, &flock.primitives)?;
+        put_words(out, &flock.nodes)?;
+    }
+    out.push(u8::from(scene.view.is_some()));
+    if let Some(view) = &scene.view {
+        [view.eye, view.look, view.up].iter().for_each(|vector| put_floats(out, &vector.to_array()));
+        put_floats(out, &[view.fov_y]);
+    }
+    put_some(out, scene.background);
+    put_some(out, scene.ambient);
+    put_count(out, scene.warnings.len())?;
+    scene.warnings.iter().try_for_each(|warning| put(out, warning.bytes()))
+}
+
+fn put_primitives(out: &mut Vec<u8>, primitives: &[Primitive]) -> Option<()> {
+    put_count(out, primitives.len())?;
+    for primitive in primitives {
         // A sphere is a cone of one end here, told by what stands for its other radius.
         let (base, base_radius, tip, tip_radius) = match primitive.shape {
             Shape::Sphere(sphere) => (sphere.centre, sphere.radius, Vec3::ZERO, f32::NEG_INFINITY),
@@ -50,15 +70,7 @@ pub(super) fn put_scene(out: &mut Vec<u8>, scene: &Scene) -> Option<()> {
         put_floats(out, &[tip_radius]);
         out.extend(primitive.material.unwrap_or(NONE).to_le_bytes());
     }
-    out.push(u8::from(scene.view.is_some()));
-    if let Some(view) = &scene.view {
-        [view.eye, view.look, view.up].iter().for_each(|vector| put_floats(out, &vector.to_array()));
-        put_floats(out, &[view.fov_y]);
-    }
-    put_some(out, scene.background);
-    put_some(out, scene.ambient);
-    put_count(out, scene.warnings.len())?;
-    scene.warnings.iter().try_for_each(|warning| put(out, warning.bytes()))
+    Some(())
 }
 
 /// The shading of a mesh.
@@ -108,6 +120,7 @@ pub(super) fn read_scene(from: &mut Reader<'_>, scene: Scene) -> Option<Scene> {
         textures: from.list(read_texture)?,
         lights: from.list(|from| Some(PointLight { position: from.vector()?, colour: from.vector()? }))?,
         primitives: from.list(read_primitive)?,
+        flocks: from.list(read_flock)?,
         view: read_view(from)?,
         background: read_some(from)?,
         ambient: read_some(from)?,
@@ -166,6 +179,10 @@ fn read_primitive(from: &mut Reader<'_>) -> Option<Primitive> {
         _ => Shape::Cone(Cone { base, base_radius, tip, tip_radius }),
     };
     Some(Primitive { shape, material: some(from.word()?) })
+}
+
+fn read_flock(from: &mut Reader<'_>) -> Option<Flock> {
+    Some(Flock { name: from.text()?, primitives: from.list(read_primitive)?, nodes: from.words()? })
 }
 
 /// Reads what [`put_shading`] wrote.

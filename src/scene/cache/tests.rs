@@ -209,7 +209,7 @@ fn what_is_wrong_behind_a_right_checksum_is_refused_too() {
 
 /// Gives a scene of one mesh some of everything it can be seen with.
 fn be_seen(scene: &mut Scene) {
-    use super::super::{Corners, Material, Materials, PointLight, Primitive, Shape, Texture, View};
+    use super::super::{Corners, Flock, Material, Materials, PointLight, Primitive, Shape, Texture, View};
     use crate::geometry::{Sphere, hit::Cone};
     use glam::{Vec2, Vec3};
     scene.add_material(Material { texture: Some(0), ..Material::polished("coat", Vec3::X, 1.5) });
@@ -231,6 +231,9 @@ fn be_seen(scene: &mut Scene) {
         Primitive { shape: Shape::Sphere(ball), material: None },
         Primitive { shape: Shape::Cone(cone), material: Some(1) },
     ];
+    // Placed by the one node there is.
+    let flock = vec![Primitive { shape: Shape::Sphere(ball), material: Some(0) }];
+    scene.flocks.push(Flock { name: "f".into(), primitives: flock, nodes: vec![0] });
     scene.view = Some(View { eye: Vec3::X, look: Vec3::Y, up: Vec3::Z, fov_y: 0.5 });
     (scene.background, scene.ambient) = (Some(Vec3::Z), None);
     scene.warnings.push("something is not there".into());

@@ -48,6 +48,12 @@ pub enum SettingError {
         /// The machine's name.
         machine: String,
     },
+    /// A scheme wants to know of frames to come where nobody may.
+    #[error("scheme `{scheme}` looks ahead, which is for predetermined mode, not for interactive mode")]
+    LooksAhead {
+        /// The scheme's name.
+        scheme: String,
+    },
 }
 
 /// Settings by name, with a note of which ones have been asked for.

@@ -7,6 +7,7 @@
 //! In *interactive* mode nothing of later frames may be used (P3-07). That is so by what each part is told: a frame
 //! scheme sees a structure over things as they are ([`Kept`](crate::scheme::frames::Kept)), an approximation this
 //! frame's eye and the frame before ([`Seen`]); only [`Moving`] knows the scene, and it is told one time after the other.
+//! In *predetermined* mode, a frame scheme that looks ahead is told of all frames before the first ([`Animator::prepare`]).
 //!
 //! The picture of an exact frame is that of the scene standing still as it is then, whatever the frame scheme, tile
 //! scheme, machine and processor count.
@@ -15,6 +16,7 @@ mod approximation;
 mod moving;
 
 pub use approximation::{APPROXIMATIONS, About, Approximation, Knob, Seen};
+use moving::Ahead;
 pub use moving::Moving;
 
 use crate::job::trace::{Counts, Draft, Eye, Film, Frame, Image, Look, TileCosts, Tracer};
@@ -97,12 +99,20 @@ impl Animator {
         self.method.traced(self.size)
     }
 
-    /// Makes the hierarchy as it is at a time, in seconds, before there is a frame of it.
+    /// Gets ready for the frames of those times, in seconds, before the first of them: makes plans, where the frame scheme
+    /// looks ahead, and the hierarchy as it is in the first.
     ///
     /// # Errors
     /// [`AnimateError::Build`].
-    pub fn prepare(&mut self, time: f64) -> Result<(), AnimateError> {
-        self.update(time).map(|_| ())
+    pub fn prepare(&mut self, times: &[f64]) -> Result<(), AnimateError> {
+        if self.upkeep.looks_ahead() {
+            self.upkeep.plan(&mut Ahead { moving: &mut self.moving, times })?;
+        }
+        if let Some(first) = times.first() {
+            self.moving.advance(*first);
+            self.upkeep.prepare(&mut self.moving)?;
+        }
+        Ok(())
     }
 
     /// Makes the picture of a time, in seconds.

@@ -2,7 +2,7 @@
 
 use crate::job::trace::{Hierarchy, Levels, TriangleKind, World, default_view};
 use crate::scene::{Pose, Scene, View};
-use crate::scheme::frames::Kept;
+use crate::scheme::frames::{Foretold, Kept};
 use crate::structure::bvh::build::{BuildError, Builder};
 
 /// A scene at one time after the other, for rays.
@@ -99,5 +99,32 @@ impl Kept for Moving {
 
     fn cost(&self) -> f64 {
         self.hierarchy().expected_cost()
+    }
+}
+
+/// A scene that moves, at times that are all known beforehand, in seconds.
+pub(super) struct Ahead<'a> {
+    pub(super) moving: &'a mut Moving,
+    pub(super) times: &'a [f64],
+}
+
+impl Foretold for Ahead<'_> {
+    type Error = BuildError;
+
+    fn count(&self) -> usize {
+        self.times.len()
+    }
+
+    fn costs(&mut self, made: usize, end: usize) -> Result<Vec<f64>, BuildError> {
+        let cost = |(number, time): (usize, &f64)| {
+            self.moving.advance(*time);
+            if number == 0 {
+                self.moving.rebuild()?
+            } else {
+                self.moving.refit()?
+            }
+            Ok(self.moving.cost())
+        };
+        self.times[made..end].iter().enumerate().map(cost).collect()
     }
 }

@@ -13,7 +13,7 @@ use crate::scene::{
     Animation, Bend, BendKey, Corners, Curve, Material, Materials, Mesh, Motion, PointLight, Primitive,
     Scene, Shape, SplitMix64, View,
 };
-use crate::scheme::frames::SCHEMES;
+use crate::scheme::frames::{Kept, SCHEMES};
 use crate::structure::bvh::build::{Builder, Settings};
 
 const SIZE: (u32, u32) = (50, 38);
@@ -107,7 +107,7 @@ fn builder() -> Builder {
 
 fn animator(scene: Scene, upkeep: &str, levels: Levels, method: Approximation) -> Animator {
     let moving = Moving::new(scene, builder(), levels, TriangleKind::Watertight);
-    let upkeep = frames::Scheme::new(upkeep, BTreeMap::new()).unwrap();
+    let upkeep = frames::Scheme::new(upkeep, BTreeMap::new(), frames::Mode::Predetermined).unwrap();
     Animator::new(moving, upkeep, method, Look::default(), SIZE, (8, 4))
 }
 
@@ -126,6 +126,7 @@ fn pictures<M: Machine>(
     let mut scheme = tiles::Scheme::new(scheme, machine, processors, BTreeMap::new()).unwrap();
     let (width, height) = animator.traced();
     let mut film = Film::new(machine, width, height).unwrap();
+    animator.prepare(times).unwrap();
     let made = times.iter().map(|time| {
         let made = animator.next(*time, machine, &mut scheme, &mut film).unwrap();
         assert!(made.update_ticks <= made.ticks);
@@ -173,6 +174,43 @@ fn every_frame_is_that_of_the_scene_standing_still() {
             let other = others(two, expected);
             assert!(other <= 6, "{}, two levels, frame {number}: {other} pixels", about.name);
         }
+    }
+}
+
+#[test]
+fn frames_that_are_foretold_cost_least_as_they_come() {
+    // The expected costs of its frames, and of what it was told of those it makes structures for, by each scheme.
+    let times: Vec<f64> = (0..12).map(|number| f64::from(number) / 6.0).collect();
+    let total = |name: &str, percent: &str| {
+        let settings = match name {
+            "rebuild_when_best" | "rebuild_on_threshold" => {
+                BTreeMap::from([("percent".to_owned(), percent.to_owned())])
+            }
+            _ => BTreeMap::new(),
+        };
+        let moving = Moving::new(scene(), builder(), Levels::One, TriangleKind::Watertight);
+        let upkeep = frames::Scheme::new(name, settings, frames::Mode::Predetermined).unwrap();
+        let mut animator = Animator::new(moving, upkeep, exact(), Look::default(), SIZE, (8, 4));
+        animator.prepare(&times).unwrap();
+        let (mut sum, mut rebuilt) = (0.0, 0);
+        for (number, time) in times.iter().enumerate() {
+            let upkeep = animator.update(*time).unwrap();
+            let cost = animator.moving.cost();
+            let is_anew = number > 0 && upkeep == Upkeep::Rebuilt;
+            rebuilt += usize::from(is_anew);
+            sum += cost * if is_anew { 1.02 } else { 1.0 };
+        }
+        (sum, rebuilt)
+    };
+    let (best, rebuilt) = total("rebuild_when_best", "2");
+    assert!((1..times.len()).contains(&rebuilt), "made anew {rebuilt} times");
+    for percent in ["100", "102", "110", "130", "200"] {
+        let (other, _) = total("rebuild_on_threshold", percent);
+        assert!(best <= other * (1.0 + 1e-9), "{best}, but {other} by a threshold of {percent} %");
+    }
+    for name in ["rebuild_each_frame", "refit_only"] {
+        let (other, _) = total(name, "");
+        assert!(best <= other * (1.0 + 1e-9), "{best}, but {other} by {name}");
     }
 }
 

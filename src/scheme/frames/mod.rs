@@ -1,10 +1,11 @@
 //! Keeping a structure in step with what moves, frame by frame: made anew, or given new bounds, and when which.
 //!
 //! A scheme sees a structure through [`Kept`] alone: it can be rebuilt, refitted, and says what going through it is
-//! expected to cost.
+//! expected to cost. In *interactive* mode (Lext, Assarsson and Möller 2000; P3-07) that is all there is to know; a scheme
+//! that looks ahead is set up in *predetermined* mode only, where it is told of all frames beforehand ([`Foretold`]).
 //!
 //! ```
-//! use apportion::scheme::frames::{Kept, Scheme, Upkeep};
+//! use apportion::scheme::frames::{Kept, Mode, Scheme, Upkeep};
 //!
 //! // What is asked of it costs twice as much with each refit, until it is rebuilt.
 //! struct Doubling(f64);
@@ -22,7 +23,8 @@
 //!         self.0
 //!     }
 //! }
-//! let mut scheme = Scheme::new("rebuild_on_threshold", [("percent".to_owned(), "300".to_owned())].into())?;
+//! let settings = [("percent".to_owned(), "300".to_owned())].into();
+//! let mut scheme = Scheme::new("rebuild_on_threshold", settings, Mode::Interactive)?;
 //! let mut structure = Doubling(0.0);
 //! let upkeep: Vec<Upkeep> = (0..6).map(|_| scheme.next(&mut structure).unwrap()).collect();
 //! // The third frame would have cost 4 times as much as the first.
@@ -33,9 +35,9 @@
 
 mod rebuild_each_frame;
 mod rebuild_on_threshold;
+mod rebuild_when_best;
 mod refit_only;
 
-pub use super::About;
 use super::{SettingError, Settings};
 use std::collections::BTreeMap;
 
@@ -61,6 +63,71 @@ pub trait Kept {
     fn cost(&self) -> f64;
 }
 
+/// All frames of a sequence, for who may look ahead.
+pub trait Foretold {
+    /// Why it cannot be told.
+    type Error;
+
+    /// How many there are.
+    fn count(&self) -> usize;
+
+    /// What a question is expected to cost in each of the frames from `made` to before `end`, by a structure made anew
+    /// for the first of them and refitted for every other; in the unit of [`Kept::cost`].
+    ///
+    /// # Errors
+    /// The structure cannot be made.
+    ///
+    /// # Panics
+    /// If there are no such frames.
+    fn costs(&mut self, made: usize, end: usize) -> Result<Vec<f64>, Self::Error>;
+}
+
+/// What may be known of frames to come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// Nothing.
+    #[default]
+    Interactive,
+    /// All of it.
+    Predetermined,
+}
+
+impl Mode {
+    /// Every mode with its name in settings.
+    pub const ALL: &[(&str, Self)] =
+        &[("interactive", Self::Interactive), ("predetermined", Self::Predetermined)];
+}
+
+/// A scheme in the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct About {
+    /// Its name: value of settings and in rows, legend.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub summary: &'static str,
+    /// Whether it wants to know of frames to come.
+    pub looks_ahead: bool,
+}
+
+/// What a scheme's file holds.
+trait FrameScheme: Sized {
+    /// What it is, in a line.
+    const SUMMARY: &'static str;
+    /// Whether it makes plans.
+    const LOOKS_AHEAD: bool = false;
+
+    fn new(settings: &Settings) -> Result<Self, SettingError>;
+
+    /// Is told of all frames, in predetermined mode.
+    fn plan<F: Foretold>(&mut self, frames: &mut F) -> Result<(), F::Error> {
+        let _ = frames;
+        Ok(())
+    }
+
+    /// Brings a structure up to date with a frame, by number; it has to be made anew if it is `unmade`.
+    fn next<K: Kept>(&mut self, kept: &mut K, frame: usize, unmade: bool) -> Result<Upkeep, K::Error>;
+}
+
 /// What was done to a structure for a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Upkeep {
@@ -70,8 +137,8 @@ pub enum Upkeep {
     Refitted,
 }
 
-/// Declares the schemes: the list is the table of contents. Each file holds a type of one name, with `SUMMARY`, `new`
-/// and `next`; the file's name is the scheme's word everywhere.
+/// Declares the schemes: the list is the table of contents. Each file holds a type of one name, a [`FrameScheme`]; the
+/// file's name is the scheme's word everywhere.
 macro_rules! frame_schemes {
     ($($file:ident => $Scheme:ident),* $(,)?) => {
         enum AnyScheme { $($Scheme($file::$Scheme)),* }
@@ -79,9 +146,8 @@ macro_rules! frame_schemes {
         /// The schemes, by name.
         pub const SCHEMES: &[About] = &[$(About {
             name: stringify!($file),
-            summary: $file::SUMMARY,
-            native_only: false,
-            learns: false,
+            summary: $file::$Scheme::SUMMARY,
+            looks_ahead: $file::$Scheme::LOOKS_AHEAD,
         }),*];
 
         impl AnyScheme {
@@ -95,8 +161,12 @@ macro_rules! frame_schemes {
                 }
             }
 
-            fn next<K: Kept>(&mut self, kept: &mut K, first: bool) -> Result<Upkeep, K::Error> {
-                match self { $(AnyScheme::$Scheme(scheme) => scheme.next(kept, first)),* }
+            fn plan<F: Foretold>(&mut self, frames: &mut F) -> Result<(), F::Error> {
+                match self { $(AnyScheme::$Scheme(scheme) => scheme.plan(frames)),* }
+            }
+
+            fn next<K: Kept>(&mut self, kept: &mut K, frame: usize, unmade: bool) -> Result<Upkeep, K::Error> {
+                match self { $(AnyScheme::$Scheme(scheme) => scheme.next(kept, frame, unmade)),* }
             }
         }
     };
@@ -106,11 +176,15 @@ frame_schemes! {
     rebuild_each_frame => RebuildEachFrame,
     refit_only => RefitOnly,
     rebuild_on_threshold => RebuildOnThreshold,
+    rebuild_when_best => RebuildWhenBest,
 }
 
 /// A scheme set up for one structure.
 pub struct Scheme {
     scheme: AnyScheme,
+    looks_ahead: bool,
+    /// The number of the frame that comes next.
+    frame: usize,
     /// Whether the structure has not been made yet, or of no use since a failure.
     unmade: bool,
 }
@@ -119,12 +193,42 @@ impl Scheme {
     /// Sets up the scheme called `name`.
     ///
     /// # Errors
-    /// [`SettingError`]: an unknown scheme or setting, a senseless value.
-    pub fn new(name: &str, settings: BTreeMap<String, String>) -> Result<Self, SettingError> {
+    /// [`SettingError`]: an unknown scheme or setting, a senseless value, one that looks ahead in interactive mode.
+    pub fn new(name: &str, settings: BTreeMap<String, String>, mode: Mode) -> Result<Self, SettingError> {
         let settings = Settings::new(name, settings);
         let scheme = AnyScheme::new(name, &settings)?;
         settings.finish()?;
-        Ok(Self { scheme, unmade: true })
+        let looks_ahead = SCHEMES.iter().any(|about| about.name == name && about.looks_ahead);
+        if looks_ahead && mode == Mode::Interactive {
+            return Err(SettingError::LooksAhead { scheme: name.to_owned() });
+        }
+        Ok(Self { scheme, looks_ahead, frame: 0, unmade: true })
+    }
+
+    /// Whether it wants to know of frames to come.
+    pub fn looks_ahead(&self) -> bool {
+        self.looks_ahead
+    }
+
+    /// Tells a scheme that looks ahead of all frames, the next one being the first of them; no other is told.
+    ///
+    /// # Errors
+    /// What the frames say. They are not foretold then.
+    pub fn plan<F: Foretold>(&mut self, frames: &mut F) -> Result<(), F::Error> {
+        // Whatever the structure comes to meanwhile.
+        (self.frame, self.unmade) = (0, true);
+        if self.looks_ahead { self.scheme.plan(frames) } else { Ok(()) }
+    }
+
+    /// Makes a structure before the first frame comes.
+    ///
+    /// # Errors
+    /// What the structure says.
+    pub fn prepare<K: Kept>(&mut self, kept: &mut K) -> Result<(), K::Error> {
+        self.unmade = true;
+        self.scheme.next(kept, self.frame, true)?;
+        self.unmade = false;
+        Ok(())
     }
 
     /// Brings a structure up to date with the next frame. The first time, and after a failure, it is made anew,
@@ -133,8 +237,10 @@ impl Scheme {
     /// # Errors
     /// What the structure says.
     pub fn next<K: Kept>(&mut self, kept: &mut K) -> Result<Upkeep, K::Error> {
-        let first = std::mem::replace(&mut self.unmade, true);
-        let upkeep = self.scheme.next(kept, first)?;
+        let unmade = std::mem::replace(&mut self.unmade, true);
+        let frame = self.frame;
+        self.frame += 1;
+        let upkeep = self.scheme.next(kept, frame, unmade)?;
         self.unmade = false;
         Ok(upkeep)
     }

@@ -1,17 +1,17 @@
 //! Anew for every frame: dear, and as good as can be whatever moves how.
 
-use super::{Kept, SettingError, Settings, Upkeep};
-
-pub(super) const SUMMARY: &str = "the structure is made anew for every frame";
+use super::{FrameScheme, Kept, SettingError, Settings, Upkeep};
 
 pub(super) struct RebuildEachFrame;
 
-impl RebuildEachFrame {
-    pub(super) fn new(_settings: &Settings) -> Result<Self, SettingError> {
+impl FrameScheme for RebuildEachFrame {
+    const SUMMARY: &'static str = "the structure is made anew for every frame";
+
+    fn new(_settings: &Settings) -> Result<Self, SettingError> {
         Ok(Self)
     }
 
-    pub(super) fn next<K: Kept>(&mut self, kept: &mut K, _first: bool) -> Result<Upkeep, K::Error> {
+    fn next<K: Kept>(&mut self, kept: &mut K, _frame: usize, _unmade: bool) -> Result<Upkeep, K::Error> {
         kept.rebuild()?;
         Ok(Upkeep::Rebuilt)
     }

@@ -4,9 +4,7 @@
 //! Setting: `percent` (150), of the cost expected when the structure was last made; above it, it is made anew within the
 //! same frame, so no frame goes through one that is worse. At 100 any loss will do.
 
-use super::{Kept, SettingError, Settings, Upkeep};
-
-pub(super) const SUMMARY: &str = "refitted, and made anew when it is expected to cost too much";
+use super::{FrameScheme, Kept, SettingError, Settings, Upkeep};
 
 pub(super) struct RebuildOnThreshold {
     most: f64,
@@ -14,14 +12,16 @@ pub(super) struct RebuildOnThreshold {
     made: f64,
 }
 
-impl RebuildOnThreshold {
-    pub(super) fn new(settings: &Settings) -> Result<Self, SettingError> {
+impl FrameScheme for RebuildOnThreshold {
+    const SUMMARY: &'static str = "refitted, and made anew when it is expected to cost too much";
+
+    fn new(settings: &Settings) -> Result<Self, SettingError> {
         let percent = settings.number("percent", 150, 100..=1_000_000)?;
         Ok(Self { most: percent as f64 / 100.0, made: 0.0 })
     }
 
-    pub(super) fn next<K: Kept>(&mut self, kept: &mut K, first: bool) -> Result<Upkeep, K::Error> {
-        if !first {
+    fn next<K: Kept>(&mut self, kept: &mut K, _frame: usize, unmade: bool) -> Result<Upkeep, K::Error> {
+        if !unmade {
             kept.refit()?;
             // A cost that cannot be told is above any threshold.
             if kept.cost() <= self.most * self.made {

@@ -1,18 +1,18 @@
 //! Made once and refitted ever after: cheap, and the worse the less things stay together.
 
-use super::{Kept, SettingError, Settings, Upkeep};
-
-pub(super) const SUMMARY: &str = "the structure is made once, then given new bounds for every frame";
+use super::{FrameScheme, Kept, SettingError, Settings, Upkeep};
 
 pub(super) struct RefitOnly;
 
-impl RefitOnly {
-    pub(super) fn new(_settings: &Settings) -> Result<Self, SettingError> {
+impl FrameScheme for RefitOnly {
+    const SUMMARY: &'static str = "the structure is made once, then given new bounds for every frame";
+
+    fn new(_settings: &Settings) -> Result<Self, SettingError> {
         Ok(Self)
     }
 
-    pub(super) fn next<K: Kept>(&mut self, kept: &mut K, first: bool) -> Result<Upkeep, K::Error> {
-        if first {
+    fn next<K: Kept>(&mut self, kept: &mut K, _frame: usize, unmade: bool) -> Result<Upkeep, K::Error> {
+        if unmade {
             kept.rebuild()?;
             return Ok(Upkeep::Rebuilt);
         }

@@ -6,7 +6,7 @@ use crate::measure::subject::settings::JobSettings;
 use crate::measure::subject::trace::Pictured;
 use crate::measure::subject::{Cell, MeasureError, failed};
 use crate::scene::Scene;
-use crate::scheme::frames;
+use crate::scheme::frames::{self, Mode};
 use crate::structure::bvh::build::{Builder, Settings};
 use std::collections::BTreeMap;
 
@@ -14,6 +14,7 @@ pub(super) struct Asked {
     pub(super) picture: Pictured,
     pub(super) levels: Levels,
     upkeep: String,
+    mode: Mode,
     percent: Option<u32>,
     /// Its name and its knob.
     pub(super) approximation: (String, Option<f64>),
@@ -29,6 +30,7 @@ impl Asked {
             picture: Pictured::of(&settings)?,
             levels: settings.choice("levels", &[("two", Levels::Two), ("one", Levels::One)])?,
             upkeep: settings.choice("upkeep", &upkeep)?.to_owned(),
+            mode: settings.choice("mode", Mode::ALL)?,
             percent: settings.parsed("percent")?,
             approximation: settings.read(
                 "approximation",
@@ -40,20 +42,26 @@ impl Asked {
             frames: settings.parsed("frames")?,
         };
         settings.finish(cell)?;
+        asked.upkeep()?;
         Ok(asked)
+    }
+
+    /// The frame scheme.
+    fn upkeep(&self) -> Result<frames::Scheme, MeasureError> {
+        let percent = self.percent.map(|percent| ("percent".to_owned(), percent.to_string()));
+        frames::Scheme::new(&self.upkeep, percent.into_iter().collect(), self.mode)
+            .map_err(|error| MeasureError::Setting(error.to_string()))
     }
 
     /// To go through the scene as the cell says, or, exactly, as whatever it says is held against.
     pub(super) fn animator(&self, scene: &Scene, exactly: bool) -> Result<Animator, MeasureError> {
         let builder = Builder::new(self.picture.builder, &Settings::default()).map_err(failed)?;
         let moving = Moving::new(scene.clone(), builder, self.levels, self.picture.triangle);
-        let percent = self.percent.map(|percent| ("percent".to_owned(), percent.to_string()));
-        let (upkeep, settings) = match exactly {
-            true => ("rebuild_each_frame", BTreeMap::new()),
-            false => (&*self.upkeep, percent.into_iter().collect()),
+        let upkeep = match exactly {
+            true => frames::Scheme::new("rebuild_each_frame", BTreeMap::new(), Mode::Interactive)
+                .map_err(failed)?,
+            false => self.upkeep()?,
         };
-        let upkeep = frames::Scheme::new(upkeep, settings)
-            .map_err(|error| MeasureError::Setting(error.to_string()))?;
         let (name, knob) =
             if exactly { ("exact", None) } else { (&*self.approximation.0, self.approximation.1) };
         let method = Approximation::new(name, knob).expect("it was read");

@@ -1,7 +1,8 @@
 //! The job `animate`: the frames of a scene that moves (Lext, Assarsson and Möller 2000; P3-10 to P3-13).
 //!
 //! Settings: `job.size`, `job.tile`, `job.depth`, `job.builder`, `job.triangle` as of the job `trace`; `job.levels`
-//! (`two`, `one`); `job.upkeep`, one of [`frames::SCHEMES`](crate::scheme::frames::SCHEMES), with `job.percent`; `job.approximation`, one of
+//! (`two`, `one`); `job.upkeep`, one of [`frames::SCHEMES`](crate::scheme::frames::SCHEMES), with `job.percent`;
+//! `job.mode` (`interactive`, `predetermined`: schemes that look ahead may; P3-07); `job.approximation`, one of
 //! [`APPROXIMATIONS`](crate::job::animate::APPROXIMATIONS), `NAME` or `NAME:KNOB`; `job.lights`, how many of the scene's lights are lit (all). The frames of a
 //! cell are spread evenly over the scene's animation, first and last included; with `job.frames` it has so many, of
 //! which the cell takes those in the middle: the more there are, the more has one in common with the next.
@@ -169,7 +170,7 @@ struct Charge {
 /// What the frames of a cell cost, made one after the other.
 fn charges(asked: &Asked, stage: &AnimateStage, one: &Threads) -> Result<Vec<Charge>, MeasureError> {
     let mut animator = asked.animator(&stage.scene, false)?;
-    stage.times.first().map_or(Ok(()), |first| animator.prepare(*first)).map_err(failed)?;
+    animator.prepare(&stage.times).map_err(failed)?;
     let mut film = film(one, animator.traced())?;
     let tick = 1.0 / one.ticks_per_nanosecond();
     let charge = |time: &f64| {
@@ -258,8 +259,8 @@ impl<H: Borrow<M>, M: Machine> Walk for AnimateSubject<H, M> {
     fn go(&mut self, mut trace: Option<&mut Nearest>) -> Result<Vec<Sample>, MeasureError> {
         let mut animator = self.asked.animator(&self.stage.scene, false)?;
         let start = self.one.now();
-        if let (Way::Traced, Some(first)) = (&self.way, self.stage.times.first()) {
-            animator.prepare(*first).map_err(failed)?;
+        if let Way::Traced = self.way {
+            animator.prepare(&self.stage.times).map_err(failed)?;
         }
         let preprocessing = (self.one.now() - start) as f64 / self.one.ticks_per_nanosecond();
         let mut film = match self.way {

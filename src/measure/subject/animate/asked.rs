@@ -19,6 +19,8 @@ pub(super) struct Asked {
     pub(super) approximation: (String, Option<f64>),
     pub(super) lights: Option<u32>,
     pub(super) frames: Option<u32>,
+    /// Whether to tell what the time goes into.
+    pub(super) split: bool,
 }
 
 impl Asked {
@@ -38,9 +40,15 @@ impl Asked {
             )?,
             lights: settings.parsed("lights")?,
             frames: settings.parsed("frames")?,
+            split: settings.choice("split", &[("no", false), ("yes", true)])?,
         };
         settings.finish(cell)?;
         Ok(asked)
+    }
+
+    /// Whether every picture must be that of the scene standing still.
+    pub(super) fn is_exact(&self) -> bool {
+        self.approximation.0 == "exact"
     }
 
     /// To go through the scene as the cell says, or, exactly, as whatever it says is held against.

@@ -6,7 +6,6 @@ mod list;
 mod print;
 mod progress;
 mod render;
-mod render_words;
 mod report;
 mod run;
 mod save;

@@ -175,6 +175,7 @@ impl Prepared {
         let run = Run::read(folder)?;
         let mut table = report::table(&run.rows, &self.experiment.paper);
         table.hold_peaks_to(|machine| Plan::whole_counts(&self.experiment, machine, Host::here().cores));
+        table.made_on(&run.meta.host);
         let mut written = vec![folder.rows(), folder.csv(), folder.meta()];
         written.extend(write_charts(&run, folder)?);
         let loose = self.selection.until.map(|percent| (percent, report::loose(&run.rows, percent)));

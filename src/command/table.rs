@@ -17,8 +17,9 @@ pub(crate) fn table(words: &TableWords) -> Result<()> {
     let experiment = Shelf::open(Path::new(EXPERIMENTS))?.load(&words.name, &Known::here())?;
     let folder = RunFolder::newest_finished(Path::new(RESULTS), &words.name)?;
     let mut table = report::table(&read_rows(&folder.rows())?, &experiment.paper);
-    let cores = Meta::read(&folder.meta())?.host.cores;
-    table.hold_peaks_to(|machine| Plan::whole_counts(&experiment, machine, cores));
+    let host = Meta::read(&folder.meta())?.host;
+    table.hold_peaks_to(|machine| Plan::whole_counts(&experiment, machine, host.cores));
+    table.made_on(&host);
     print::table(&table, words.format)?;
     if words.format == Format::Table {
         print::line(&format!("from {}", folder.path().display()))?;

@@ -1,7 +1,7 @@
 //! The words of the command line.
 
 use super::list::EXPERIMENTS;
-use super::render_words::{RENDER_EXAMPLES, RenderWords};
+use super::render::{RENDER_EXAMPLES, RenderWords};
 use apportion::measure::{Known, MeasureError, Selection, Shelf};
 use apportion::record::METRICS;
 use apportion::scheme::tiles;

@@ -37,6 +37,12 @@ pub struct Host {
     pub cpu: String,
     /// Hardware threads this process may use.
     pub cores: u32,
+    /// The processor's clock as the run began, MHz; none where the system does not tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clock_mhz: Option<u32>,
+    /// Main memory, bytes; none where the system does not tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub memory: Option<u64>,
     /// Caches of the first core: `L1 Data 32K`; empty where the system does not tell.
     pub caches: Vec<String>,
     /// Operating system and instruction set: `linux x86_64`.
@@ -44,11 +50,24 @@ pub struct Host {
 }
 
 impl Host {
+    /// The computer in a line: processor, cores, clock, memory, system.
+    pub fn line(&self) -> String {
+        let cores = if self.cores == 1 { "1 core".to_owned() } else { format!("{} cores", self.cores) };
+        let clock = self.clock_mhz.map_or(String::new(), |clock| format!(" at {clock} MHz"));
+        let memory = self.memory.map_or(String::new(), |bytes| {
+            format!(", {:.1} GiB of memory", bytes as f64 / f64::from(1 << 30))
+        });
+        format!("{}, {cores}{clock}{memory}, {}", self.cpu, self.system)
+    }
+
     /// The computer this runs on.
     pub fn here() -> Self {
         Self {
-            cpu: cpu_name().unwrap_or_else(|| "unknown".to_owned()),
+            cpu: told("/proc/cpuinfo", "model name").unwrap_or_else(|| "unknown".to_owned()),
             cores: std::thread::available_parallelism().map_or(1, |cores| cores.get() as u32),
+            clock_mhz: told("/proc/cpuinfo", "cpu MHz")
+                .and_then(|clock| Some(clock.parse::<f64>().ok()? as u32)),
+            memory: told("/proc/meminfo", "MemTotal").and_then(|memory| kibibytes(&memory)),
             caches: caches(),
             system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
         }
@@ -95,10 +114,16 @@ impl Meta {
     }
 }
 
-fn cpu_name() -> Option<String> {
-    let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
-    let line = text.lines().find(|line| line.starts_with("model name"))?;
+/// What stands behind the first such word and its colon in a file of the system's.
+fn told(file: &str, word: &str) -> Option<String> {
+    let text = std::fs::read_to_string(file).ok()?;
+    let line = text.lines().find(|line| line.starts_with(word))?;
     Some(line.split_once(':')?.1.trim().to_owned())
+}
+
+/// Bytes of so many `kB`, as the system calls them.
+fn kibibytes(text: &str) -> Option<u64> {
+    text.strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
 fn caches() -> Vec<String> {
@@ -110,4 +135,28 @@ fn caches() -> Vec<String> {
         Some(format!("L{} {} {}", read("level")?, read("type")?, read("size")?))
     };
     (0..).map_while(index).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_computer_is_told_in_a_line_as_far_as_it_is_known() {
+        let mut host = Host {
+            cpu: "A".into(),
+            cores: 1,
+            clock_mhz: None,
+            memory: None,
+            caches: vec![],
+            system: "s".into(),
+        };
+        assert_eq!(host.line(), "A, 1 core, s");
+        (host.cores, host.clock_mhz, host.memory) = (2, Some(333), kibibytes("131072 kB"));
+        assert_eq!(host.line(), "A, 2 cores at 333 MHz, 0.1 GiB of memory, s");
+        assert_eq!((kibibytes("12"), kibibytes("x kB")), (None, None));
+        // What was written before there were clock and memory is read still.
+        let old: Host = serde_json::from_str(r#"{"cpu":"A","cores":1,"caches":[],"system":"s"}"#).unwrap();
+        assert_eq!((old.clock_mhz, old.memory), (None, None));
+    }
 }

@@ -278,6 +278,26 @@ pub const METRICS: &[Metric] = {
         ),
         declare("rebuilt", "%", Lower, "Share of the frames for which the structure was made anew."),
         declare("preprocessing_time", "ns", Lower, "Time from the loaded scene to what its first frame starts from."),
+        declare("primitives", "primitives", Lower, "What rays can meet: triangles, spheres and cones of the scene as it stands."),
+        declare(
+            "visibility_time",
+            "ns",
+            Lower,
+            "Time of a frame in which it was asked what rays meet, of a pass apart from the one whose frames are timed, on one processor, clock reads in it (Lext et al. 2000, Measurement report proposal).",
+        ),
+        declare("shading_time", "ns", Lower, "Time of a frame of the same pass in which it was traced, but for that."),
+        declare(
+            "rebuild_time",
+            "ns",
+            Lower,
+            "Time of a frame of the same pass in which the scene took its pose and the structure over it was brought up to date.",
+        ),
+        declare(
+            "clock_time",
+            "ns",
+            Lower,
+            "Time a frame of the same pass that reading the clock takes, as often as it was read: about half of it lies in the visibility time, half in the shading time.",
+        ),
         declare("scene_bytes", "B", Lower, "Memory of the scene: meshes, materials, textures, key frames."),
         declare(
             "apnsr",
@@ -287,6 +307,13 @@ pub const METRICS: &[Metric] = {
         )
         .gives_up(AccuracyKind::Answer),
         declare("pnsr", "dB", Higher, "The same ratio of one frame."),
+        declare(
+            "ssim",
+            "x",
+            Higher,
+            "Structural similarity of all frames to the exact ones, on average: 1 for the same (Wang et al. 2004).",
+        )
+        .gives_up(AccuracyKind::Answer),
         declare("pixels_other", "%", Lower, "Share of the pixels of all frames that are not those of the exact picture."),
         declare(
             "mover_x",

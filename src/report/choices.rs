@@ -26,8 +26,17 @@ const HIDDEN: [&str; 10] = [
 const SEED: u64 = 1;
 
 /// Settings of a job that say what is asked, as those of its scene do, and not how it is answered.
-const ASKED: [&str; 8] =
-    ["job.ask", "job.gap", "job.offset", "job.place", "job.query", "job.rays", "job.reach", "job.scale"];
+const ASKED: [&str; 9] = [
+    "job.ask",
+    "job.frames",
+    "job.gap",
+    "job.offset",
+    "job.place",
+    "job.query",
+    "job.rays",
+    "job.reach",
+    "job.scale",
+];
 
 /// Whether cells that differ in this setting answer different questions, so that neither can take the other's place.
 fn is_asked(key: &str) -> bool {
@@ -74,7 +83,7 @@ pub(crate) struct Choice {
 }
 
 /// The settings whose values differ from row to row.
-fn differing(rows: &[Row]) -> BTreeSet<&str> {
+pub(crate) fn differing(rows: &[Row]) -> BTreeSet<&str> {
     let all: BTreeSet<&str> = rows.iter().map(|row| row.settings.as_str()).collect();
     let pairs: BTreeSet<(&str, &str)> = all.iter().flat_map(|settings| settings_pairs(settings)).collect();
     let everywhere =

@@ -9,6 +9,7 @@
 //!
 //! The same rows give the same bytes.
 
+mod animation;
 mod choices;
 pub mod comparison;
 mod doubt;
@@ -16,6 +17,7 @@ mod draw;
 mod escape;
 mod figure;
 mod group;
+mod listing;
 mod marker;
 mod page;
 mod run;

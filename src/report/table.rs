@@ -3,9 +3,10 @@
 use super::choices::{Choices, choices, compared};
 use super::doubt::doubts;
 use super::group::{Curve, Group, groups};
+use super::listing::{Listing, listings};
 use super::text;
 use crate::record::statistics::Interval;
-use crate::record::{Better, PaperFigure, Row, THREADS, metric, quoted, settings_pairs};
+use crate::record::{Better, Host, PaperFigure, Row, THREADS, metric, quoted, settings_pairs};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -54,6 +55,8 @@ pub struct Table {
     pub(crate) doubts: Vec<Vec<String>>,
     /// The cells of a run in which nothing is shared out.
     pub(crate) choices: Vec<Choices>,
+    /// What its job tells beside all that.
+    pub(crate) listings: Vec<Listing>,
 }
 
 /// Makes the table of a run.
@@ -82,10 +85,15 @@ pub fn table(rows: &[Row], figures: &[PaperFigure]) -> Table {
     let doubts = doubts(rows, &speedups);
     let choices = choices(rows);
     lines.extend(choices.iter().flat_map(choice_lines));
-    Table { lines, groups: speedups, doubts, choices }
+    Table { lines, groups: speedups, doubts, choices, listings: listings(rows) }
 }
 
 impl Table {
+    /// Tells on which computer what is of `threads` was made.
+    pub fn made_on(&mut self, host: &Host) {
+        self.listings.iter_mut().for_each(|listing| listing.made_on(host));
+    }
+
     /// Takes the error from peaks over fewer counts of processors than the experiment's, which `whole` gives for a
     /// machine: they are not what the paper printed.
     pub fn hold_peaks_to(&mut self, whole: impl Fn(&str) -> Vec<u32>) {

@@ -2,6 +2,7 @@
 
 use super::choices::Choices;
 use super::group::{Curve, Group};
+use super::listing::Listing;
 use super::table::{Line, Table};
 use super::winners::winners;
 use crate::record::statistics::Interval;
@@ -25,6 +26,7 @@ pub(crate) fn text(table: &Table) -> String {
     }
     parts.extend(winners(&table.groups));
     parts.extend(table.choices.iter().map(Choices::text));
+    parts.extend(table.listings.iter().map(Listing::text));
     if parts.is_empty() { "no rows to show".to_owned() } else { parts.join("\n") }
 }
 

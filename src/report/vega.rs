@@ -56,12 +56,15 @@ fn points(figure: &Figure) -> Vec<Value> {
         let Body::Plot(plot) = &panel.body else { continue };
         for series in &plot.series {
             let Some(entry) = series.entry else { continue };
-            for point in &series.points {
+            for (step, point) in series.points.iter().enumerate() {
                 let Some(x) = point.x.map(|x| place(&plot.x, x)) else { continue };
                 let mut value = json!({
                     "panel": panel.heading, "curve": figure.legend[entry].label, "x": x, "y": point.y,
                 });
                 // What most points have not is left out: there are many points.
+                if series.style == Style::Joined {
+                    value["step"] = json!(step);
+                }
                 if series.style == Style::Paper {
                     value["paper"] = json!(true);
                 }
@@ -117,6 +120,12 @@ fn plot_layers(plot: &Plot) -> Vec<Value> {
     ];
     if plot.series.iter().any(|series| series.style == Style::Curve) {
         layers.insert(0, json!({ "transform": ours, "mark": "line", "encoding": { "x": x, "y": y } }));
+    }
+    if plot.series.iter().any(|series| series.style == Style::Joined) {
+        let order = json!({ "field": "step", "type": "quantitative" });
+        let joined = json!([{ "filter": "isValid(datum.step)" }]);
+        let line = json!({ "x": x, "y": y, "order": order });
+        layers.insert(0, json!({ "transform": joined, "mark": "line", "encoding": line }));
     }
     layers
 }

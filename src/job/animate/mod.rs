@@ -14,15 +14,18 @@
 
 mod approximation;
 mod moving;
+mod split;
 
 pub use approximation::{APPROXIMATIONS, About, Approximation, Knob, Seen};
 use moving::Ahead;
 pub use moving::Moving;
+pub use split::Split;
 
 use crate::job::trace::{Counts, Draft, Eye, Film, Frame, Image, Look, TileCosts, Tracer};
 use crate::machine::{Machine, RunError};
 use crate::scheme::frames::{self, Upkeep};
 use crate::scheme::tiles;
+use crate::structure::bvh::Intersector;
 use crate::structure::bvh::build::BuildError;
 
 /// Why a frame cannot be shown.
@@ -193,7 +196,18 @@ impl Animator {
         draft: Option<&'a Draft>,
         film: &'a mut Film<M>,
     ) -> Frame<'a, M> {
-        let tracer = Tracer::new(self.moving.world(), self.moving.hierarchy(), self.look);
+        self.frame_by(self.moving.hierarchy(), eye, draft, film)
+    }
+
+    /// The same, `intersector` answering for the rays.
+    fn frame_by<'a, M: Machine>(
+        &'a self,
+        intersector: &'a dyn Intersector,
+        eye: Eye,
+        draft: Option<&'a Draft>,
+        film: &'a mut Film<M>,
+    ) -> Frame<'a, M> {
+        let tracer = Tracer::new(self.moving.world(), intersector, self.look);
         let frame = Frame::new(tracer, eye, self.tile, film);
         match draft {
             Some(draft) => frame.drafted(draft),

@@ -160,6 +160,30 @@ fn others(a: &Image, b: &Image) -> usize {
 }
 
 #[test]
+fn what_a_frames_time_goes_into_changes_no_picture() {
+    for method in ["exact", "pixel_reuse", "lower_resolution"] {
+        let make = || {
+            animator(scene(), "rebuild_on_threshold", Levels::Two, Approximation::new(method, None).unwrap())
+        };
+        let expected = one_by_one(make(), &TIMES);
+        let (mut animator, machine) = (make(), Threads::new(1).unwrap());
+        let (width, height) = animator.traced();
+        let mut film = Film::new(&machine, width, height).unwrap();
+        for (time, expected) in TIMES.iter().zip(&expected) {
+            let (picture, split) = animator.split(*time, &machine, &mut film).unwrap();
+            assert!(picture == *expected, "{method} at {time}");
+            // Rays from the eye are asked about 128 at once and all others one by one, the clock read twice a question.
+            let asked = u64::from(width * height).div_ceil(128);
+            assert!(split.readings % 2 == 0 && split.readings > 2 * asked / 16, "{split:?}");
+            assert!(
+                split.rebuild_ticks > 0 && split.visibility_ticks > 0 && split.shading_ticks > 0,
+                "{split:?}"
+            );
+        }
+    }
+}
+
+#[test]
 fn every_frame_is_that_of_the_scene_standing_still() {
     let scene = scene();
     let expected: Vec<Image> = TIMES.iter().map(|time| still(&scene, *time)).collect();

@@ -5,7 +5,7 @@
 //!    one level or of two, or [`List`], the slow one.
 //! 3. A [`Frame`] is the picture of one camera as independent pieces, tiles of 32 x 4 pixels, for any tile scheme;
 //!    each processor writes the pixels of its own tiles into a [`Film`], and counts its rays.
-//! 4. The [`Image`] is what the film holds, in linear colours, to be written as a file.
+//! 4. The [`Image`] is what the film holds, in linear colours, to be written as a file; a [`Video`] is many of them.
 //!
 //! The picture is the same bit for bit for every scheme, machine and processor count: a pixel depends on nothing but
 //! its own rays, a hit is the same whatever answers for it, and no sum runs over processors.
@@ -21,6 +21,7 @@ mod image;
 mod list;
 mod shade;
 mod surface;
+mod video;
 mod world;
 
 pub use costs::{Costed, TileCosts};
@@ -32,6 +33,7 @@ pub use hierarchy::{Hierarchy, Levels, TriangleKind};
 pub use image::Image;
 pub use list::List;
 pub use shade::{Look, MOST_DEPTH, Tracer};
+pub use video::{FrameRate, Video};
 pub use world::{Items, World};
 
 #[cfg(test)]

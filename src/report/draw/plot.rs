@@ -197,7 +197,7 @@ fn write_series(series: &Series, offset: i32, legend: &[Entry], place: &Place, o
     };
     let look = series.entry.map(|entry| legend[entry].look);
     let word = match series.style {
-        Style::Curve => "c",
+        Style::Curve | Style::Joined => "c",
         Style::Scatter => "s",
         Style::Paper => "s h",
         Style::Ideal => "ideal",

@@ -5,6 +5,9 @@
 //! visible, the pixels covered or the rays that hit, is the same; where rows do not tell the answer, only those that
 //! share their common settings do. Where what is counted is by how much an answer is too large, all of them stand
 //! together. Where no cell gives up more than another there is no choice to show, and nothing is drawn.
+//!
+//! Cells whose settings differ in a knob alone, as `pixel_reuse:4` and `pixel_reuse:8` do, are one method: a line joins
+//! them in the order of the knob (Lext, Assarsson and Möller 2000, Approximating algorithms; P3-A04).
 
 use super::time::unit;
 use super::words::{bare, machine, number};
@@ -48,11 +51,15 @@ struct Choice<'a> {
 
 fn figure(material: &Material<'_>, kind: AccuracyKind) -> Option<Figure> {
     let rows = &material.run.rows;
-    let times = medians(rows, "total_time");
+    // Of an animation the time a frame is what its paper asks for.
+    let a_frame = medians(rows, "frame_time_mean");
+    let of_frame = !a_frame.is_empty();
+    let times = if of_frame { a_frame } else { medians(rows, "total_time") };
+    let axis = if of_frame { "time a frame" } else { "time of all frames" };
     let mut answers = medians(rows, "nodes_visible");
     answers.extend(medians(rows, "pixels_covered"));
     answers.extend(medians(rows, "rays_hit"));
-    let mut entries: Vec<(String, Entry)> = Vec::new();
+    let mut methods = Methods::default();
     let mut panels = Vec::new();
     // Where nothing is shared out, settings have looks of their own instead of the one scheme.
     let (label, view) = (labels(rows), views(rows));
@@ -76,40 +83,89 @@ fn figure(material: &Material<'_>, kind: AccuracyKind) -> Option<Figure> {
         for ((machine, _, scene, _), choices) in places {
             if choices.iter().any(|choice| choice.given_up != choices[0].given_up) {
                 let place = (machine, scene, view(choices[0].settings));
-                panels.push(panel(&place, metric, &choices, &mut entries, panels.len(), name, alone));
+                panels.push(panel(&place, (metric, axis), &choices, &mut methods, panels.len(), name, alone));
             }
         }
     }
     let says = panels.iter().map(says).collect::<Vec<_>>().join(" ");
+    let joined = methods.0.iter().any(|method| method.knobs.len() > 1);
     (!panels.is_empty()).then(|| Figure {
         kind: format!("accuracy-{}", kind.word()),
         title: format!("Speed against accuracy: {}", kind.word()),
         says,
-        how:
-            "Every cell is a point; the line joins those of which no other is both quicker and gives up less."
-                .into(),
-        legend: entries.into_iter().map(|(_, entry)| entry).collect(),
+        how: format!(
+            "Every cell is a point; the {}line joins those of which no other is both quicker and gives up less.{}",
+            if joined { "grey " } else { "" },
+            if joined { " Others join the cells of a method, in the order of its knob." } else { "" }
+        ),
+        legend: methods.legend(),
         panels,
     })
 }
 
+/// What has a line in the legend: a scheme, or where nothing is shared out a method, with the values of its knob.
+#[derive(Default)]
+struct Methods(Vec<Method>);
+
+struct Method {
+    name: String,
+    look: Look,
+    /// As they are written.
+    knobs: Vec<String>,
+}
+
+impl Methods {
+    /// The number of a method, one more of whose knob's values is now known.
+    fn number(&mut self, (name, knob): (&str, Option<&str>), look: impl Fn(usize) -> Look) -> usize {
+        let number = self.0.iter().position(|method| method.name == name).unwrap_or_else(|| {
+            let look = look(self.0.len());
+            self.0.push(Method { name: name.to_owned(), look, knobs: Vec::new() });
+            self.0.len() - 1
+        });
+        let knobs = &mut self.0[number].knobs;
+        knobs.extend(knob.filter(|knob| !knobs.iter().any(|other| other == knob)).map(str::to_owned));
+        number
+    }
+
+    fn legend(self) -> Vec<Entry> {
+        let entry = |mut method: Method| {
+            let value = |text: &String| text.parse().unwrap_or(f64::NAN);
+            method.knobs.sort_by(|a, b| value(a).total_cmp(&value(b)));
+            let label = match method.knobs.is_empty() {
+                true => method.name,
+                false => format!("{}: {}", method.name, method.knobs.join(", ")),
+            };
+            Entry { label, look: method.look }
+        };
+        self.0.into_iter().map(entry).collect()
+    }
+}
+
+/// A method and its knob: `pixel_reuse:4` is `pixel_reuse` at 4.
+fn method(label: &str) -> (&str, Option<&str>) {
+    match label.rsplit_once(':') {
+        Some((name, knob)) if knob.parse::<f64>().is_ok_and(f64::is_finite) => (name, Some(knob)),
+        _ => (label, None),
+    }
+}
+
 fn panel(
     (place, scene, view): &(&str, &str, String),
-    metric: &Metric,
+    (metric, time): (&Metric, &str),
     choices: &[Choice<'_>],
-    entries: &mut Vec<(String, Entry)>,
+    methods: &mut Methods,
     pair: usize,
     name: Option<&dyn Fn(&str) -> String>,
     alone: bool,
 ) -> Panel {
     let (scale, unit) = unit(choices.iter().map(|choice| choice.time).fold(0.0, f64::max));
-    let mut series: Vec<Series> = Vec::new();
+    let mut series: Vec<(Style, usize, Vec<(Option<f64>, Point)>)> = Vec::new();
     for choice in choices {
         let label = name.map_or_else(|| choice.scheme.to_owned(), |name| name(choice.settings));
-        let number = entries.iter().position(|(known, _)| *known == label).unwrap_or_else(|| {
-            let look = if name.is_some() { Look::nth(entries.len()) } else { Look::of(choice.scheme, 0) };
-            entries.push((label.clone(), Entry { label, look }));
-            entries.len() - 1
+        let (own, knob) = if name.is_some() { method(&label) } else { (&*label, None) };
+        let number = methods.number((own, knob), |number| match name {
+            Some(_) => Look::nth(number),
+            None => Look::of(choice.scheme, 0),
         });
         let differs = |pair: &(&str, &str)| {
             choices.iter().any(|other| settings_pairs(other.settings).all(|theirs| theirs != *pair))
@@ -119,17 +175,28 @@ fn panel(
         let note = std::iter::once(format!("P = {}", choice.processors)).chain(settings);
         let note = note.collect::<Vec<_>>().join(" ");
         let point = Point { note, ..Point::bare(choice.given_up, choice.time / scale) };
-        match series.iter_mut().find(|series| series.entry == Some(number)) {
-            Some(series) => series.points.push(point),
-            None => {
-                series.push(Series { style: Style::Scatter, entry: Some(number), points: vec![point] });
-            }
+        let knob = knob.and_then(|knob| knob.parse().ok());
+        match series.iter_mut().find(|(_, entry, _)| *entry == number) {
+            Some((.., points)) => points.push((knob, point)),
+            None => series.push((
+                knob.map_or(Style::Scatter, |_: f64| Style::Joined),
+                number,
+                vec![(knob, point)],
+            )),
         }
     }
+    let joined = |(style, entry, mut points): (Style, usize, Vec<(Option<f64>, Point)>)| {
+        if style == Style::Joined {
+            points.sort_by(|a, b| a.0.unwrap_or_default().total_cmp(&b.0.unwrap_or_default()));
+        }
+        let points = points.into_iter().map(|(_, point)| point).collect();
+        Series { style, entry: Some(entry), points }
+    };
+    let mut series: Vec<Series> = series.into_iter().map(joined).collect();
     let all: Vec<&Point> = series.iter().flat_map(|series| &series.points).collect();
     let name = metric.name.replace('_', " ");
     let x = axis(name, metric.unit, all.iter().filter_map(|point| point.x), metric.counts_surplus);
-    let y = axis("time of all frames".to_owned(), unit, all.iter().map(|point| point.y), true);
+    let y = axis(time.to_owned(), unit, all.iter().map(|point| point.y), true);
     let front = front(&all, metric.better);
     // A camera path goes by its name, and a machine that is the only one without saying.
     let short = view.split(' ').map(|pair| pair.strip_prefix("scene.path=").unwrap_or(bare(pair)));
@@ -203,7 +270,25 @@ fn says(panel: &Panel) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Better, Point, front};
+    use super::{Better, Look, Methods, Point, front, method};
+
+    #[test]
+    fn cells_that_differ_in_a_knob_are_one_method() {
+        assert_eq!(method("pixel_reuse:4"), ("pixel_reuse", Some("4")));
+        assert_eq!(
+            method("depth=3 approximation=lower_resolution:1.5"),
+            ("depth=3 approximation=lower_resolution", Some("1.5"))
+        );
+        for whole in ["exact", "a:b", "file.obj:", "x:nan", "x:inf"] {
+            assert_eq!(method(whole), (whole, None));
+        }
+        let mut methods = Methods::default();
+        for label in ["exact", "reuse:12", "reuse:4", "exact", "reuse:4"] {
+            methods.number(method(label), Look::nth);
+        }
+        let legend: Vec<String> = methods.legend().into_iter().map(|entry| entry.label).collect();
+        assert_eq!(legend, ["exact", "reuse: 4, 12"]);
+    }
 
     #[test]
     fn the_front_leaves_out_what_another_beats() {

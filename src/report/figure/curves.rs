@@ -108,6 +108,7 @@ pub(crate) fn curves(panel: &Panel) -> impl Iterator<Item = (usize, &[Point])> {
         Body::Plot(plot) => &plot.series[..],
         _ => &[],
     };
-    let curves = series.iter().filter(|series| matches!(series.style, Style::Curve | Style::Scatter));
+    let curves =
+        series.iter().filter(|series| matches!(series.style, Style::Curve | Style::Scatter | Style::Joined));
     curves.filter_map(|series| Some((series.entry?, &series.points[..])))
 }

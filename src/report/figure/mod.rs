@@ -3,6 +3,7 @@
 mod accuracy;
 mod balance;
 mod baseline;
+mod by_frame;
 mod curves;
 mod frames;
 mod plane;
@@ -14,7 +15,7 @@ mod words;
 
 pub(crate) use time::unit;
 pub(crate) use timeline::{ACTIVITIES, shares, wrong};
-pub(crate) use words::number;
+pub(crate) use words::{bare, number};
 
 use super::Run;
 use super::choices::{Choices, choices, compared};
@@ -31,6 +32,9 @@ const KINDS: &[fn(&Material<'_>) -> Vec<Figure>] = &[
     balance::figures,
     sharing::figures,
     frames::figures,
+    by_frame::figures,
+    by_frame::rays,
+    by_frame::parts,
     timeline::figures,
 ];
 
@@ -159,6 +163,8 @@ pub(crate) enum Style {
     Curve,
     /// Marks alone.
     Scatter,
+    /// Marks, which a line joins in their order, whatever their places.
+    Joined,
     /// Hollow marks: a paper's.
     Paper,
     /// A dashed line: what could be hoped for.

@@ -1,7 +1,7 @@
 //! One run: what it asked, the paper's table, its figures, where it was made.
 
 use super::figure;
-use super::tables::{choices, doubts, paper};
+use super::tables::{choices, doubts, listings, paper};
 use crate::record::settings_pairs;
 use crate::report::escape::{attribute, link};
 use crate::report::figure::Figure;
@@ -23,10 +23,12 @@ impl Section<'_> {
         let mut html = format!("<section id=\"{}\" class=\"run\">\n", self.id);
         let _ = writeln!(html, "<h2>{}</h2>", attribute(&self.run.question.title));
         html.push_str(&self.introduction());
-        let table = table(&self.run.rows, &self.run.question.paper);
+        let mut table = table(&self.run.rows, &self.run.question.paper);
+        table.made_on(&self.run.meta.host);
         html.push_str(&paper(&table));
         html.push_str(&doubts(&table));
         html.push_str(&choices(&table));
+        html.push_str(&listings(&table));
         for figure in &self.figures {
             html.push_str(&figure::html(&self.id, &self.run.link, figure)?);
         }
@@ -59,11 +61,10 @@ impl Section<'_> {
         let Run { meta, link: folder, .. } = self.run;
         let commit = meta.commit.as_deref().unwrap_or("not known");
         let host = &meta.host;
-        let cores = format!("{}, {} cores, {}", host.cpu, host.cores, host.system);
         let rows = format!("{} rows, run {}", self.run.rows.len(), meta.run);
         let time = format!("{} to {}", meta.start, meta.end.as_deref().unwrap_or("(unfinished)"));
         let terms = [
-            ("Computer", cores),
+            ("Computer", host.line()),
             ("Caches", host.caches.join(", ")),
             ("Version", format!("apportion {}, commit {commit}", meta.version)),
             ("Seed", meta.seed.to_string()),

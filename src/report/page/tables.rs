@@ -79,6 +79,38 @@ pub(super) fn choices(table: &Table) -> String {
     html
 }
 
+/// What the job tells of its cells beside all that.
+pub(super) fn listings(table: &Table) -> String {
+    let mut html = String::new();
+    for listing in &table.listings {
+        let title = attribute(&listing.title);
+        let _ = write!(
+            html,
+            "<details class=\"listing\"><summary>{title}</summary><div class=\"wide\" tabindex=\"0\" role=\"region\" \
+             aria-label=\"{title}\"><table><thead><tr>"
+        );
+        for column in &listing.columns {
+            let class = if column.is_words { "" } else { " class=\"n\"" };
+            let _ = write!(html, "<th scope=\"col\"{class}>{}", attribute(&column.heading));
+        }
+        html.push_str("<tbody>\n");
+        for line in 0..listing.len() {
+            html.push_str("<tr>");
+            for (number, column) in listing.columns.iter().enumerate() {
+                let start = match (number, column.is_words) {
+                    (0, _) => "<th scope=\"row\">",
+                    (_, true) => "<td>",
+                    (_, false) => "<td class=\"n\">",
+                };
+                let _ = write!(html, "{start}{}", attribute(&column.cells[line]));
+            }
+            html.push('\n');
+        }
+        let _ = write!(html, "</table></div><p>{}.</p></details>\n", attribute(&listing.notes.join(". ")));
+    }
+    html
+}
+
 /// What the measured numbers cannot tell apart, what was far out, and how much of a core was lost to others;
 /// nothing where nothing was measured.
 pub(super) fn doubts(table: &Table) -> String {

@@ -20,6 +20,8 @@ pub(super) struct Asked {
     pub(super) approximation: (String, Option<f64>),
     pub(super) lights: Option<u32>,
     pub(super) frames: Option<u32>,
+    /// Whether to tell what the time goes into.
+    pub(super) split: bool,
 }
 
 impl Asked {
@@ -40,6 +42,7 @@ impl Asked {
             )?,
             lights: settings.parsed("lights")?,
             frames: settings.parsed("frames")?,
+            split: settings.choice("split", &[("no", false), ("yes", true)])?,
         };
         settings.finish(cell)?;
         asked.upkeep()?;
@@ -51,6 +54,11 @@ impl Asked {
         let percent = self.percent.map(|percent| ("percent".to_owned(), percent.to_string()));
         frames::Scheme::new(&self.upkeep, percent.into_iter().collect(), self.mode)
             .map_err(|error| MeasureError::Setting(error.to_string()))
+    }
+
+    /// Whether every picture must be that of the scene standing still.
+    pub(super) fn is_exact(&self) -> bool {
+        self.approximation.0 == "exact"
     }
 
     /// To go through the scene as the cell says, or, exactly, as whatever it says is held against.

@@ -5,7 +5,8 @@
 //! `job.mode` (`interactive`, `predetermined`: schemes that look ahead may; P3-07); `job.approximation`, one of
 //! [`APPROXIMATIONS`](crate::job::animate::APPROXIMATIONS), `NAME` or `NAME:KNOB`; `job.lights`, how many of the scene's lights are lit (all). The frames of a
 //! cell are spread evenly over the scene's animation, first and last included; with `job.frames` it has so many, of
-//! which the cell takes those in the middle: the more there are, the more has one in common with the next.
+//! which the cell takes those in the middle: the more there are, the more has one in common with the next. With `job.split`
+//! (`no`, `yes`) cells on real threads go through the frames once more, on one processor, to tell what their time goes into.
 //!
 //! Every frame is held against the exact one that one processor makes: without an approximation it must be the same
 //! picture bit for bit; with one, it is told how far it is from it. On a simulated machine what one processor does
@@ -13,6 +14,7 @@
 //! `cycles_per_measured_ns`.
 
 mod asked;
+mod split;
 
 use super::settings::of_scheme;
 use super::trace::film;
@@ -21,10 +23,12 @@ use super::{
     simulated, stage_key, staging,
 };
 use crate::job::animate::{Animator, Made};
-use crate::job::trace::{Costed, Counts, Film, Image, TileCosts};
+use crate::job::trace::{Costed, Counts, Film, Image, TileCosts, World};
 use crate::machine::{Machine, Simulated, Threads};
 use crate::record::THREADS;
-use crate::record::statistics::{FrameTimes, average_pnsr, error_free_pnsr, mean_square_error, pnsr};
+use crate::record::statistics::{
+    FrameTimes, average_pnsr, error_free_pnsr, mean_square_error, pnsr, structural_similarity,
+};
 use crate::scene::{Scene, describe};
 use crate::scheme::frames::Upkeep;
 use crate::scheme::tiles::Scheme;
@@ -41,8 +45,9 @@ const ROUNDS: u32 = 3;
 pub(super) struct AnimateStage {
     scene: Scene,
     times: Vec<f64>,
-    /// What the scene takes.
+    /// What the scene takes, and how much there is in it for rays.
     bytes: usize,
+    primitives: usize,
     reference: RefCell<Reference>,
 }
 
@@ -118,8 +123,8 @@ impl AnimateStage {
         })? / 2;
         let times = scene.animation.times(all).skip(before as usize).take(options.frames as usize).collect();
         let reference = Reference { animator: asked.animator(&scene, true)?, made: Vec::new() };
-        let bytes = describe(&scene).bytes;
-        Ok(Self { scene, times, bytes, reference: RefCell::new(reference) })
+        let (bytes, primitives) = (describe(&scene).bytes, World::count(&scene));
+        Ok(Self { scene, times, bytes, primitives, reference: RefCell::new(reference) })
     }
 
     /// Holds a picture against the exact one: whether it is the same bit for bit, its mean square error, and how many
@@ -139,7 +144,13 @@ impl AnimateStage {
             .ok_or_else(|| MeasureError::Failed(format!("frame {frame}: a picture of another size")))?;
         let pixels = codes.chunks_exact(3).zip(exact.codes.chunks_exact(3));
         let others = pixels.filter(|(found, expected)| found != expected).count();
-        Ok(Compared { same: checksum(image) == exact.checksum, error, others })
+        // Of the same codes it is 1 without going through them.
+        let alike = if others == 0 {
+            Some(1.0)
+        } else {
+            structural_similarity(&codes, &exact.codes, image.width as usize)
+        };
+        Ok(Compared { same: checksum(image) == exact.checksum, error, others, alike })
     }
 }
 
@@ -147,6 +158,7 @@ struct Compared {
     same: bool,
     error: f64,
     others: usize,
+    alike: Option<f64>,
 }
 
 fn checksum(image: &Image) -> u32 {
@@ -188,6 +200,18 @@ enum Way {
     Traced,
     /// Charged what they took here, times so many cycles a nanosecond.
     Charged { charges: Vec<Charge>, scale: f64 },
+}
+
+/// The rays of a frame by class; of a class that has none there is no row.
+fn rays_of(frame: usize, rays: &Counts) -> impl Iterator<Item = Sample> + use<> {
+    let classes = [
+        ("rays_eye", rays.eye),
+        ("rays_shadow", rays.shadow),
+        ("rays_reflection", rays.reflection),
+        ("rays_refraction", rays.refraction),
+    ];
+    let some = classes.into_iter().filter(|(_, count)| *count > 0);
+    some.map(move |(metric, count)| Sample::of_frame(metric, frame, count as f64))
 }
 
 struct AnimateSubject<H, M: Machine> {
@@ -271,7 +295,7 @@ impl<H: Borrow<M>, M: Machine> Walk for AnimateSubject<H, M> {
         let frames = self.stage.times.len();
         let (mut samples, mut times, mut errors) = (Vec::new(), Vec::new(), Vec::new());
         let (mut rays, mut update, mut rebuilt, mut others, mut pixels) = (Counts::default(), 0.0, 0, 0, 0);
-        let (mut imbalance, mut used) = (0.0, 0);
+        let (mut imbalance, mut used, mut alike) = (0.0, 0, Vec::new());
         for frame in 0..frames {
             if trace.is_some() {
                 self.machine.borrow().start_trace();
@@ -281,18 +305,20 @@ impl<H: Borrow<M>, M: Machine> Walk for AnimateSubject<H, M> {
             let traced = machine.take_trace();
             let tick = 1.0 / machine.ticks_per_nanosecond();
             let compared = self.stage.compare(frame, &outcome.image, &self.one)?;
-            if self.asked.approximation.0 == "exact" && !compared.same {
+            if self.asked.is_exact() && !compared.same {
                 let message = format!("frame {frame}: not the picture that one processor makes");
                 return Err(MeasureError::Failed(message));
             }
             samples.push(Sample::of_frame("frame_time", frame, outcome.time));
             let of_image = outcome.image.pixels.len() as u64;
             let ratio = pnsr(compared.error).filter(|ratio| ratio.is_finite());
-            samples.extend(
-                ratio.or(error_free_pnsr(of_image)).map(|ratio| Sample::of_frame("pnsr", frame, ratio)),
-            );
+            // Exact pictures have none to tell.
+            let ratio = ratio.or(error_free_pnsr(of_image)).filter(|_| !self.asked.is_exact());
+            samples.extend(ratio.map(|ratio| Sample::of_frame("pnsr", frame, ratio)));
+            samples.extend(rays_of(frame, &outcome.rays));
             times.push(outcome.time);
             errors.push(compared.error);
+            alike.extend(compared.alike);
             rays += outcome.rays;
             update += outcome.update;
             rebuilt += usize::from(outcome.upkeep == Upkeep::Rebuilt);
@@ -314,6 +340,7 @@ impl<H: Borrow<M>, M: Machine> Walk for AnimateSubject<H, M> {
         tell("ray_rate", rays.rays() as f64 * 1e3 / times.iter().sum::<f64>().max(1e-9));
         tell("update_time", of_frames(update));
         tell("rebuilt", of_frames(100.0 * rebuilt as f64));
+        tell("primitives", self.stage.primitives as f64);
         tell("scene_bytes", self.stage.bytes as f64);
         if let Way::Traced = self.way {
             tell("preprocessing_time", preprocessing);
@@ -328,9 +355,15 @@ impl<H: Borrow<M>, M: Machine> Walk for AnimateSubject<H, M> {
             let most = error_free_pnsr((pixels / errors.len().max(1)) as u64).unwrap_or_default();
             tell("apnsr", ratio.min(most));
         }
+        if alike.len() == times.len() && !alike.is_empty() {
+            tell("ssim", alike.iter().sum::<f64>() / alike.len() as f64);
+        }
         tell("pixels_other", 100.0 * others as f64 / pixels.max(1) as f64);
         tell("load_imbalance", of_frames(imbalance));
         tell("processors_used", of_frames(used as f64));
+        if let (Way::Traced, true, true) = (&self.way, self.asked.split, trace.is_none()) {
+            samples.extend(split::split(&self.asked, &self.stage, &self.one)?);
+        }
         Ok(samples)
     }
 }

@@ -1,13 +1,17 @@
-//! `apportion render`: a picture of a scene.
+//! `apportion render`: a picture of a scene, or many of one that moves.
+
+mod video;
+mod words;
+
+pub(crate) use words::{RENDER_EXAMPLES, RenderWords};
 
 use super::print;
 use super::progress::Bar;
-use super::render_words::{CameraWords, RenderWords};
 use anyhow::{Context, Result};
 use apportion::geometry::{Camera, Lens};
 use apportion::job::trace::{
-    Counts, Eye, Film, Frame, Hierarchy, Image, Look, Tracer, TriangleKind, World, default_view, light_at,
-    view_within,
+    Counts, Eye, Film, Frame, Hierarchy, Image, Look, Tiles, Tracer, TriangleKind, World, default_view,
+    light_at, view_within,
 };
 use apportion::machine::{Machine, Processor, Threads};
 use apportion::measure::MeasureError;
@@ -21,19 +25,24 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use words::CameraWords;
 
 /// Builds the hierarchy: what is traced once need not have the best.
 const BUILDER: &str = "binned_sah";
 
-/// Renders and writes the picture, and tells what it took.
+/// Renders and writes what the words ask for, and tells what it took.
 pub(crate) fn render(words: &RenderWords) -> Result<()> {
-    let out = words.out.clone().unwrap_or_else(|| beside_us(&words.scene));
+    match words.frames {
+        Some(frames) => video::video(words, frames),
+        None => picture(words),
+    }
+}
+
+fn picture(words: &RenderWords) -> Result<()> {
+    let out = words.out.clone().unwrap_or_else(|| PathBuf::from(stem(&words.scene) + ".png"));
     // Before anything is traced for nothing.
     let write = writer(&out)?;
-    let team = Threads::new(words.processors.unwrap_or_else(cores) as usize)?;
-    let processors = team.most_processors();
-    let scheme = Scheme::new(&words.scheme, &team, processors, BTreeMap::new());
-    let mut scheme = scheme.map_err(|error| MeasureError::Words(error.to_string()))?;
+    let (team, mut scheme) = checked(words)?;
     let scene = at_frame(read(&words.scene)?, words.frame)?;
     scene.warnings.iter().for_each(|warning| print::note(warning));
     let (width, height) = words.size;
@@ -57,18 +66,14 @@ pub(crate) fn render(words: &RenderWords) -> Result<()> {
     }
     let look = Look { depth: words.depth, ..Look::of(world.scene()) };
     let mut film = Film::new(&team, width, height).context("the picture is too large")?;
+    let bar = Bar::of_tiles(&world.scene().name, Tiles::new(words.size, words.tile).count());
     let before = team.now();
-    let shares = {
-        let tracer = Tracer::new(&world, &hierarchy, look);
-        let frame = Frame::new(tracer, Eye::new(&camera, width, height), words.tile, &mut film);
-        let bar = Bar::of_tiles(&world.scene().name, frame.tiles().count());
-        let shares = scheme.run(&team, &Shown { frame: &frame, bar: &bar }).map_err(ShareError::from);
-        bar.end();
-        shares?
-    };
+    let tracer = Tracer::new(&world, &hierarchy, look);
+    let eye = Eye::new(&camera, width, height);
+    let traced = trace(&team, &mut scheme, tracer, eye, words.tile, &mut film, &bar);
     let seconds = (team.now() - before) as f64 / team.ticks_per_nanosecond() / 1e9;
-    let mut counts = Counts::default();
-    shares.into_iter().for_each(|share| counts += share.found);
+    bar.end();
+    let counts = traced?;
     let image = film.image();
     write_whole(&out, |file| write(&image, file))?;
     print::line(&format!(
@@ -83,10 +88,38 @@ pub(crate) fn render(words: &RenderWords) -> Result<()> {
     ))
 }
 
-/// A scene that moves as it is in a frame of its own; one that does not has no other than the first.
+/// The team of the words, and the scheme that shares tiles out among it.
+fn checked(words: &RenderWords) -> Result<(Threads, Scheme<Threads>)> {
+    let team = Threads::new(words.processors.unwrap_or_else(cores) as usize)?;
+    let scheme = Scheme::new(&words.scheme, &team, team.most_processors(), BTreeMap::new());
+    Ok((team, scheme.map_err(|error| MeasureError::Words(error.to_string()))?))
+}
+
+/// Traces a picture onto the film, showing how far it is.
+fn trace(
+    team: &Threads,
+    scheme: &mut Scheme<Threads>,
+    tracer: Tracer<'_>,
+    eye: Eye,
+    tile: (u32, u32),
+    film: &mut Film<Threads>,
+    bar: &Bar,
+) -> Result<Counts> {
+    let frame = Frame::new(tracer, eye, tile, film);
+    let shares = scheme.run(team, &Shown { frame: &frame, bar }).map_err(ShareError::from)?;
+    let mut counts = Counts::default();
+    shares.into_iter().for_each(|share| counts += share.found);
+    Ok(counts)
+}
+
+/// How many frames a scene has of its own; one that does not move has no other than the first.
+fn frames_of(scene: &Scene) -> u32 {
+    if scene.animation.is_still() { 1 } else { scene.animation.frames.max(1) }
+}
+
+/// A scene that moves as it is in a frame of its own.
 fn at_frame(scene: Scene, frame: u32) -> Result<Scene, MeasureError> {
-    let animation = &scene.animation;
-    let frames = if animation.is_still() { 1 } else { animation.frames.max(1) };
+    let (animation, frames) = (&scene.animation, frames_of(&scene));
     let time = animation.times(frames).nth(frame as usize).ok_or_else(|| {
         MeasureError::Words(format!(
             "--frame {frame}: expected one from 0 to {}, as the scene has them",
@@ -108,11 +141,10 @@ pub(super) fn read(name: &str) -> Result<Scene> {
     by_name(name).map_err(|error: SceneError| MeasureError::Words(error.to_string()).into())
 }
 
-/// The scene's name with `.png`, in the folder one is in.
-fn beside_us(scene: &str) -> PathBuf {
+/// What pictures are called after: the scene's name, or its file's without what follows the first point.
+fn stem(scene: &str) -> String {
     let name = Path::new(scene).file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let stem = name.split('.').find(|part| !part.is_empty()).unwrap_or("scene").to_owned();
-    PathBuf::from(stem + ".png")
+    name.split('.').find(|part| !part.is_empty()).unwrap_or("scene").to_owned()
 }
 
 type Writer = fn(&Image, &mut dyn Write) -> io::Result<()>;
@@ -124,7 +156,9 @@ fn writer(out: &Path) -> Result<Writer, MeasureError> {
     let extension = out.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let found = WRITERS.iter().find(|(known, _)| *known == extension);
     found.map(|(_, writer)| *writer).ok_or_else(|| {
-        MeasureError::Words(format!("{}: expected a name that ends in .png, .pfm or .exr", out.display()))
+        let film = if extension == "y4m" { "; a film takes --frames, such as --frames .." } else { "" };
+        let out = out.display();
+        MeasureError::Words(format!("{out}: expected a name that ends in .png, .pfm or .exr{film}"))
     })
 }
 
@@ -170,11 +204,10 @@ mod tests {
 
     #[test]
     fn pictures_are_called_after_their_scene() {
-        for (scene, name) in [("a/b.c/sponza.obj", "sponza.png"), ("room", "room.png"), ("x.ply.gz", "x.png")]
-        {
-            assert_eq!(beside_us(scene), PathBuf::from(name));
+        for (scene, name) in [("a/b.c/sponza.obj", "sponza"), ("room", "room"), ("x.ply.gz", "x")] {
+            assert_eq!(stem(scene), name);
         }
-        assert_eq!(beside_us(".."), PathBuf::from("scene.png"));
+        assert_eq!(stem(".."), "scene");
     }
 
     #[test]

@@ -8,6 +8,8 @@ pub(crate) const RENDER_EXAMPLES: &str = "Examples:
   apportion render room
   apportion render sponza.obj --camera=-12,1.5,0.3:0,3.5,0:60 --size 1024x768 --out sponza.exr
   apportion render kitchen.aff --frame 300 --depth 3
+  apportion render bart-museum-5 --frames .. --out museum.y4m
+  apportion render bart-robots --frames 100..199 --out robots/%04d.png
   apportion render corner --scheme static_blocks --processors 2";
 
 /// The words of `render`.
@@ -22,10 +24,15 @@ pub(crate) struct RenderWords {
     /// Which frame of a scene that moves, from 0, as many as it has itself; with --camera, seen from there.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) frame: u32,
+    /// Many frames of a scene that moves, first and last included; `A..` goes on to its last, `..` takes all.
+    #[arg(long, value_name = "A..B", value_parser = frames, conflicts_with = "frame", requires = "out")]
+    pub(crate) frames: Option<FrameWords>,
     /// Pixels across and down.
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
     pub(crate) size: (u32, u32),
-    /// The picture: .png in 8 bits, .pfm or .exr in linear 32-bit floats [default: the scene's name, .png].
+    /// The picture: .png in 8 bits, .pfm or .exr in linear 32-bit floats [default: the scene's name, .png]. Of many
+    /// frames: a film, .y4m, or `-` for one to standard output; or a picture each, by a name with %04d for the
+    /// frame's number, or into a folder.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Over what the hierarchy is: `one` over all triangles in the world, or `two` levels, one over places of meshes that
@@ -44,6 +51,25 @@ pub(crate) struct RenderWords {
     /// How many threads [default: as many as there are cores].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
     pub(crate) processors: Option<u32>,
+}
+
+/// Which frames: the first, and the last where it is said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct FrameWords {
+    pub(crate) first: u32,
+    pub(crate) last: Option<u32>,
+}
+
+fn frames(text: &str) -> Result<FrameWords, String> {
+    let number = |text: &str, unsaid: Option<u32>| match text.trim() {
+        "" => Some(unsaid),
+        word => word.parse().ok().map(Some),
+    };
+    let ends = text.split_once("..").and_then(|(a, b)| Some((number(a, Some(0))??, number(b, None)?)));
+    let words = ends.map(|(first, last)| FrameWords { first, last });
+    words
+        .filter(|words| words.last.is_none_or(|last| words.first <= last))
+        .ok_or_else(|| "expected A..B, A.., ..B or .., such as 100..199, the lesser first".to_owned())
 }
 
 /// A camera in words.
@@ -81,6 +107,20 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn frames_are_read_or_refused() {
+        let words = |first, last| Ok(FrameWords { first, last });
+        assert_eq!(frames("3..7"), words(3, Some(7)));
+        assert_eq!(frames("4..4"), words(4, Some(4)));
+        assert_eq!(
+            (frames(".."), frames("5.."), frames("..9")),
+            (words(0, None), words(5, None), words(0, Some(9)))
+        );
+        for wrong in ["", "3", "7..3", "a..3", "1..b", "-1..3", "1..=3", "1...3", "99999999999.."] {
+            assert!(frames(wrong).is_err(), "{wrong}");
+        }
+    }
 
     #[test]
     fn cameras_and_sizes_are_read_or_refused() {

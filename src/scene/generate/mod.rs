@@ -112,6 +112,15 @@ pub const GENERATORS: &[Generator] = &[
     bart::EIGHT,
     bart::NINE,
     bart::TEN,
+    bart::S1,
+    bart::S2,
+    bart::S3,
+    bart::S4,
+    bart::S5,
+    bart::S5_SMALL,
+    bart::S6,
+    bart::S7,
+    bart::S8,
 ];
 
 /// Makes a scene by its name.

@@ -14,11 +14,13 @@ mod kitchen;
 mod museum;
 mod pictures;
 mod robots;
+mod stresses;
 mod walker;
 
 pub(super) use kitchen::{EIGHT, FIVE, FOUR, KITCHEN, NINE, ONE, SEVEN, SIX, TEN, THREE, TWO};
 pub(super) use museum::{K3, K4, K5, K6, K7, K8};
 pub(super) use robots::ROBOTS;
+pub(super) use stresses::{S1, S2, S3, S4, S5, S5_SMALL, S6, S7, S8};
 
 /// A scene in the making.
 struct Stage {

@@ -91,7 +91,9 @@ pub(crate) fn listings(rows: &[Row]) -> Vec<Listing> {
         let all: Vec<Option<f64>> = configurations.iter().map(|one| value(one, metric)).collect();
         column(heading, metric, &all)
     };
-    let count = |number: Option<f64>| number.map_or("-".to_owned(), |number| format!("{number:.0}"));
+    let count = |number: Option<f64>| {
+        number.filter(|number| number.is_finite()).map_or("-".to_owned(), |number| format!("{number:.0}"))
+    };
     // Their mean is the total over how many there are.
     let frames = |one: &Configuration<'_>| Some(value(one, "total_time")? / value(one, "frame_time_mean")?);
     let columns = vec![

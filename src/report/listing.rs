@@ -6,7 +6,8 @@ use super::text::{blocks, wrap};
 use crate::record::{Host, Row};
 
 /// What makes listings of rows; each gives as many as the rows have to tell.
-const LISTINGS: &[fn(&[Row]) -> Vec<Listing>] = &[animation::listings];
+type Make = fn(&[Row]) -> Vec<Listing>;
+const LISTINGS: &[Make] = &[animation::listings];
 
 /// The listings of a run.
 pub(crate) fn listings(rows: &[Row]) -> Vec<Listing> {

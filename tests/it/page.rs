@@ -93,6 +93,124 @@ fn run() -> Run {
     Run { meta: meta("made-up"), question, rows, timeline: Some(TIMELINE.into()), link: "made up/run".into() }
 }
 
+/// A run of animations: an exact one, a method at two knobs, all frames told, on one scene of BART's.
+fn animated() -> Run {
+    let mut rows = Vec::new();
+    let methods = [("exact", 1.0, 100.0, 1.0), ("reuse:12", 0.25, 18.0, 0.6), ("reuse:4", 0.75, 24.0, 0.8)];
+    for (repeat, (method, share, ratio, alike)) in
+        (0..3).flat_map(|repeat| methods.map(|method| (repeat, method)))
+    {
+        let settings = format!("job.approximation={method};job.size=800x600");
+        let mut add = |frame, metric, value| {
+            let row = row("serial", &settings, "threads", 1, metric, value);
+            let scene = "bart-museum-5".into();
+            rows.push(Row { frame, repeat, job: "animate".into(), scene, experiment: "moves".into(), ..row });
+        };
+        let time = 4e6 * share;
+        for (metric, value) in [
+            ("total_time", 20.0 * time),
+            ("frame_time_mean", 5.0 * time),
+            ("frame_time_max", 7.0 * time),
+            ("deviation", 0.37),
+            ("continuity", 0.18),
+            ("preprocessing_time", 3e6),
+            ("primitives", 11_175.0),
+            ("scene_bytes", 8.5e6),
+            ("structure_bytes", 0.5e6),
+            ("apnsr", ratio),
+            ("ssim", alike),
+            ("clock_time", 1e6),
+            ("speedup", 1.0),
+        ] {
+            add(None, metric, value);
+        }
+        for frame in 0..4 {
+            let here = time * f64::from(frame + 4);
+            add(Some(frame), "frame_time", here * (1.0 + f64::from(repeat)));
+            add(Some(frame), "rays_eye", 480_000.0 * share);
+            add(Some(frame), "rays_shadow", 900_000.0 * share);
+            for (metric, part) in [("rebuild_time", 0.2), ("visibility_time", 0.5), ("shading_time", 0.3)] {
+                add(Some(frame), metric, part * here);
+            }
+            if method != "exact" {
+                add(Some(frame), "pnsr", ratio + f64::from(frame));
+            }
+        }
+    }
+    let question = Question { title: "Moves".into(), reproduces: String::new(), paper: Vec::new() };
+    Run { meta: meta("moves"), question, rows, timeline: None, link: "moves/run".into() }
+}
+
+#[test]
+fn an_animation_is_told_as_bart_asks_for() {
+    let run = animated();
+    let mut table = apportion::report::table(&run.rows, &run.question.paper);
+    table.made_on(&run.meta.host);
+    let text = table.text();
+    let report = text.split_once("BART's report: ").expect("it is there").1.replace("\n  ", " ");
+    for words in [
+        "model bart-museum-5, frames 4, primitives 11175, complexity level 5, resolution 800x600, mode interactive",
+        "scene 8.50 MB",
+        "average, ms",
+        "2 cores at 333 MHz, 0.1 GiB of memory",
+    ] {
+        assert!(report.contains(words), "no `{words}` in\n{text}");
+    }
+    let line = report.lines().find(|line| line.starts_with("reuse:4 ")).expect("it has a line");
+    let cells: Vec<&str> = line.split_whitespace().collect();
+    assert_eq!(cells, ["reuse:4", "15.0", "21.0", "60.0"], "average, worst and total are what differs");
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    assert!(html(&run).contains("<td>11175<td>5<td>800x600<td>interactive<td>exact"), "the page has it too");
+    // The cells of another job tell nothing of the kind.
+    assert!(!html(&self::run()).contains("BART"), "of an animation alone");
+}
+
+#[test]
+fn an_animations_frames_are_drawn_one_by_one() {
+    let run = animated();
+    let html = html(&run);
+    let said = |kind: &str| said_in(&html, &format!("moves-{kind}"));
+    assert!(
+        said("by-frame-time").contains("from 8.00 ms (reuse:12) to 56.0 ms (exact)"),
+        "{}",
+        said("by-frame-time")
+    );
+    // Three repeats, each slower than the one before: paired, the ratio is the same in all.
+    assert!(
+        said("by-frame-ratio").contains("from 0.25 (reuse:12) to 0.75 (reuse:4)"),
+        "{}",
+        said("by-frame-ratio")
+    );
+    assert!(
+        said("by-frame-pnsr").contains("the worst frame has 18.0 dB (reuse:12)"),
+        "{}",
+        said("by-frame-pnsr")
+    );
+    assert!(
+        said("by-frame-rays").contains("480000 eye, 900000 shadow rays a frame"),
+        "{}",
+        said("by-frame-rays")
+    );
+    assert!(html.contains("Of exact; 1 of 3 configurations trace as many."));
+    let parts = said("by-frame-parts");
+    assert!(parts.contains("exact: 20.0 % rebuild, 50.0 % visibility, 30.0 % shading"), "{parts}");
+    // A method is one line over its knob, least first, and of two measures of quality each has its panel.
+    let accuracy = &html[html.find("<figure id=\"moves-accuracy-answer\"").expect("it is there")..];
+    assert!(accuracy.contains("reuse: 4, 12"), "the legend has the knob");
+    assert!(accuracy.contains("data-d=\"24,15 18,5\"") && accuracy.contains("data-d=\"0.8,15 0.6,5\""));
+    // Where rows of frames were left out there is nothing to draw, and the table is the same.
+    let mut whole = run.clone();
+    whole.rows.retain(|row| row.frame.is_none());
+    assert!(!self::html(&whole).contains("by-frame"));
+    // Odd numbers break nothing.
+    let mut odd = run;
+    for (number, row) in odd.rows.iter_mut().enumerate() {
+        row.value = [row.value, f64::NAN, f64::INFINITY, 0.0, -1.0][number % 5];
+    }
+    self::html(&odd);
+    odd.charts().expect("they can be drawn");
+}
+
 const TIMELINE: &str = r#"{"traceEvents": [
     {"ph": "M", "name": "process_name", "pid": 1, "tid": 0, "args": {"name": "lock_free on e4000, P=2"}},
     {"ph": "X", "name": "working", "pid": 1, "tid": 0, "ts": 10.0, "dur": 30.0},
@@ -112,7 +230,8 @@ fn a_page_holds_a_figure_of_every_kind() {
     let run = run();
     let html = html(&run);
     if let Some(folder) = std::env::var_os("CHARTS_TO_LOOK_AT") {
-        std::fs::write(Path::new(&folder).join("made-up.html"), &html).expect("it is written");
+        let both = page(&[run.clone(), animated()]).expect("it can be drawn");
+        std::fs::write(Path::new(&folder).join("made-up.html"), both).expect("it is written");
     }
     for kind in ["plane", "speedup", "time", "accuracy-structure", "balance", "sharing", "frames", "timeline"]
     {
@@ -135,7 +254,11 @@ fn a_page_holds_a_figure_of_every_kind() {
 
 /// What the caption of a figure says.
 fn said<'a>(html: &'a str, kind: &str) -> &'a str {
-    let figure = &html[html.find(&format!("<figure id=\"made-up-{kind}\"")).expect("it is there")..];
+    said_in(html, &format!("made-up-{kind}"))
+}
+
+fn said_in<'a>(html: &'a str, id: &str) -> &'a str {
+    let figure = &html[html.find(&format!("<figure id=\"{id}\"")).expect("it is there")..];
     let caption = &figure[figure.find("<figcaption>").expect("it has a caption")..];
     &caption[..caption.find("</figcaption>").expect("it ends")]
 }

@@ -50,10 +50,55 @@ fn words_that_are_off_and_files_that_are_not_there_are_told() {
         (&["corner", "--camera", "1,2,3"], 2, "X,Y,Z:X,Y,Z"),
         (&["corner", "--camera", "1,2,3:1,2,3"], 2, "the point looked at is the eye"),
         (&["gone.obj"], 1, "gone.obj: cannot be read"),
+        (&["bart-museum-3", "--frames", "..3"], 2, "--out"),
+        (&["bart-museum-3", "--frames", "..3", "--frame", "1", "--out", "a.y4m"], 2, "cannot be used with"),
+        (&["bart-museum-3", "--frames", "3..1", "--out", "a.y4m"], 2, "the lesser first"),
+        (&["bart-museum-3", "--frames", "200..300", "--out", "a.y4m"], 2, "from 0 to 299"),
+        (&["corner", "--frames", "0..1", "--out", "a.y4m"], 2, "from 0 to 0"),
+        (&["bart-museum-3", "--frames", "..", "--out", "a.png"], 2, "%04d"),
+        (&["bart-museum-3", "--frames", "..", "--out", "a-%04d.gif"], 2, ".png, .pfm or .exr"),
+        (&["bart-museum-3", "--out", "a.y4m"], 2, "a film takes --frames"),
     ] {
         let output = apportion(folder.path(), &[&["render"], words].concat());
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.code() == Some(code) && said.contains(part), "{words:?}: {said}");
     }
     assert_eq!(std::fs::read_dir(folder.path()).expect("it can be listed").count(), 0);
+}
+
+#[test]
+fn a_film_holds_the_frames_that_are_rendered_one_by_one() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let render = |words: &[&str]| {
+        let output = apportion(
+            folder.path(),
+            &[&["render", "bart-museum-3", "--size", "17x12", "--depth", "2"], words].concat(),
+        );
+        assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
+        output.stdout
+    };
+    let read = |name: &str| std::fs::read(folder.path().join(name)).expect("it was written");
+    let said = String::from_utf8(render(&["--frames", "148..150", "--out", "a.y4m"])).expect("it is text");
+    assert!(said.starts_with("a.y4m: 3 frames at 49.8333 a second, 17 x 12, "), "{said}");
+    let film = read("a.y4m");
+    let head = b"YUV4MPEG2 W17 H12 F299:6 Ip A1:1 C420jpeg XCOLORRANGE=LIMITED\n";
+    let body = film.strip_prefix(head).expect("it begins so");
+    // A word, a byte a pixel, and two for each square of four.
+    assert_eq!(body.len(), 3 * (6 + 17 * 12 + 2 * 9 * 6));
+    assert!(body.chunks(6 + 17 * 12 + 2 * 9 * 6).all(|frame| frame.starts_with(b"FRAME\n")));
+    assert!(
+        render(&["--frames", "148..150", "--out", "-"]) == film,
+        "the same to standard output, and nothing else"
+    );
+    render(&["--frames", "148..150", "--out", "b%03d.pfm"]);
+    render(&["--frames", "149..149", "--out", "c/"]);
+    render(&["--frame", "149", "--out", "one.pfm"]);
+    assert!(read("b149.pfm") == read("one.pfm"), "bit for bit that of the frame by itself");
+    assert!(read("b148.pfm") != read("b149.pfm") && read("b150.pfm") != read("b149.pfm"), "it moves");
+    assert!(read("c/bart-museum-3-0149.png").starts_with(b"\x89PNG"));
+    assert_eq!(
+        std::fs::read_dir(folder.path()).expect("it can be listed").count(),
+        6,
+        "no other file is left"
+    );
 }

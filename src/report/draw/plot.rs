@@ -129,6 +129,10 @@ fn ticked(axis: &Axis, most: usize) -> Ticked {
     let range = along(axis, axis.low)..along(axis, axis.high);
     let (first, last) = match &axis.scale {
         Scale::Names(names) => (0, names.len() as i32 - 1),
+        // There is nothing between a frame and the next.
+        Scale::Even if axis.name == "frame" && range.end - range.start < most as f64 => {
+            (range.start.ceil() as i32, range.end.floor() as i32)
+        }
         Scale::Even if axis.name != "processors" => return Ticked::round(range, most),
         // A number that is no count is read by its power of ten.
         Scale::Doubling if axis.name != "processors" && range.end - range.start > DECADES => {

@@ -141,6 +141,9 @@ impl Methods {
     }
 }
 
+/// Points with the values of their method's knob.
+type Knobbed = Vec<(Option<f64>, Point)>;
+
 /// A method and its knob: `pixel_reuse:4` is `pixel_reuse` at 4.
 fn method(label: &str) -> (&str, Option<&str>) {
     match label.rsplit_once(':') {
@@ -159,7 +162,7 @@ fn panel(
     alone: bool,
 ) -> Panel {
     let (scale, unit) = unit(choices.iter().map(|choice| choice.time).fold(0.0, f64::max));
-    let mut series: Vec<(Style, usize, Vec<(Option<f64>, Point)>)> = Vec::new();
+    let mut series: Vec<(Style, usize, Knobbed)> = Vec::new();
     for choice in choices {
         let label = name.map_or_else(|| choice.scheme.to_owned(), |name| name(choice.settings));
         let (own, knob) = if name.is_some() { method(&label) } else { (&*label, None) };
@@ -185,7 +188,7 @@ fn panel(
             )),
         }
     }
-    let joined = |(style, entry, mut points): (Style, usize, Vec<(Option<f64>, Point)>)| {
+    let joined = |(style, entry, mut points): (Style, usize, Knobbed)| {
         if style == Style::Joined {
             points.sort_by(|a, b| a.0.unwrap_or_default().total_cmp(&b.0.unwrap_or_default()));
         }

@@ -106,7 +106,7 @@ pub(super) fn listings(table: &Table) -> String {
             }
             html.push('\n');
         }
-        let _ = write!(html, "</table></div><p>{}.</p></details>\n", attribute(&listing.notes.join(". ")));
+        let _ = writeln!(html, "</table></div><p>{}.</p></details>", attribute(&listing.notes.join(". ")));
     }
     html
 }

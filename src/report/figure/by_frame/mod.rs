@@ -113,6 +113,8 @@ fn against(rows: &[Row], times: &[Told<'_>]) -> Figure {
         let Body::Plot(plot) = &mut panel.body else { continue };
         let line = [plot.x.low, plot.x.high].map(|x| Point::bare(x, 1.0)).to_vec();
         plot.series.insert(0, Series { style: Style::Ideal, entry: None, points: line });
+        // The line at 1 is to be seen also where all are quicker.
+        plot.y.high = plot.y.high.max(1.08);
     }
     let says = panels.ends(|panel, (quickest, least), (slowest, most)| {
         let (least, most) = (number(least), number(most));
@@ -151,6 +153,13 @@ impl Panels {
         points: impl Fn(&Told<'a>, &Told<'a>) -> Vec<(u32, f64)>,
     ) -> Self {
         let (name, view) = (names(rows), views(rows));
+        // A configuration looks the same in all of these figures.
+        let mut order: Vec<String> = Vec::new();
+        for one in self::told(rows, "frame_time").iter().map(|told| name(&told.configuration)) {
+            if !order.contains(&one) {
+                order.push(one);
+            }
+        }
         let mut made = Self { panels: Vec::new(), legend: Vec::new(), firsts: Vec::new() };
         for places in places(told, &view) {
             let serial = places.iter().find(|told| told.configuration.scheme == "serial");
@@ -166,7 +175,8 @@ impl Panels {
                 if points.is_empty() {
                     continue;
                 }
-                let entry = made.entry(name_of(told));
+                let look = order.iter().position(|other| *other == name(&told.configuration)).unwrap_or(0);
+                let entry = made.entry(name_of(told), Look::nth(look));
                 let points = points.into_iter().map(|(frame, y)| Point::bare(f64::from(frame), y)).collect();
                 series.push(Series { style: Style::Curve, entry: Some(entry), points });
             }
@@ -178,9 +188,8 @@ impl Panels {
         made
     }
 
-    fn entry(&mut self, label: String) -> usize {
+    fn entry(&mut self, label: String, look: Look) -> usize {
         self.legend.iter().position(|entry| entry.label == label).unwrap_or_else(|| {
-            let look = Look::nth(self.legend.len());
             self.legend.push(Entry { label, look });
             self.legend.len() - 1
         })
@@ -219,16 +228,20 @@ fn label(name: &dyn Fn(&Configuration<'_>) -> String, told: &Told<'_>, places: &
 
 /// What is told, by machine, scene and question, in the order of the rows.
 fn places<'a, 'b>(told: &'b [Told<'a>], view: &impl Fn(&str) -> String) -> Vec<Vec<&'b Told<'a>>> {
-    let mut places: Vec<((&str, &str, String), Vec<&'b Told<'a>>)> = Vec::new();
+    let mut keys: Vec<(&str, &str, String)> = Vec::new();
+    let mut places: Vec<Vec<&'b Told<'a>>> = Vec::new();
     for one in told {
         let Configuration { machine, scene, settings, .. } = one.configuration;
         let key = (machine, scene, view(settings));
-        match places.iter_mut().find(|(known, _)| *known == key) {
-            Some((_, all)) => all.push(one),
-            None => places.push((key, vec![one])),
+        match keys.iter().position(|known| *known == key) {
+            Some(place) => places[place].push(one),
+            None => {
+                keys.push(key);
+                places.push(vec![one]);
+            }
         }
     }
-    places.into_iter().map(|(_, all)| all).collect()
+    places
 }
 
 /// A panel over the frames of a configuration's scene.

@@ -84,7 +84,9 @@ fn stacked(all: &[Vec<Told<'_>>; 3], one: &Configuration<'_>) -> Option<Vec<(u32
         Some((*frame, [*rebuild, *visibility.get(frame)?, *shading.get(frame)?]))
     };
     let stack: Vec<_> = rebuild.iter().filter_map(of).collect();
-    (!stack.is_empty()).then_some(stack)
+    // Shares are told of it.
+    let whole: f64 = stack.iter().flat_map(|(_, parts)| parts).sum();
+    (whole > 0.0).then_some(stack)
 }
 
 /// What reading the clock takes a frame, ns.

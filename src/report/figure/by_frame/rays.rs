@@ -7,6 +7,7 @@ use crate::report::figure::curves::fit;
 use crate::report::figure::words::number;
 use crate::report::figure::{Body, Entry, Figure, Material, Point, Series, Style};
 use crate::report::marker::Look;
+use std::collections::BTreeMap;
 
 /// The classes: metric, name.
 const CLASSES: [(&str, &str); 4] = [
@@ -33,8 +34,11 @@ pub(crate) fn figures(material: &Material<'_>) -> Vec<Figure> {
             let Some(own) = told.iter().find(|told| told.configuration == first.configuration) else {
                 continue;
             };
+            // A frame without a row of the class has no such rays.
+            let rays: BTreeMap<u32, f64> = own.medians().collect();
+            let of = |frame: &u32| rays.get(frame).copied().unwrap_or(0.0);
             let points: Vec<Point> =
-                own.medians().map(|(frame, rays)| Point::bare(f64::from(frame), rays)).collect();
+                first.frames.keys().map(|frame| Point::bare(f64::from(*frame), of(frame))).collect();
             let mean = points.iter().map(|point| point.y).sum::<f64>() / points.len() as f64;
             words.push(format!("{} {}", number(mean), CLASSES[class].1));
             series.push(Series { style: Style::Curve, entry: Some(class), points });

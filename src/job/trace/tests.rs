@@ -71,7 +71,7 @@ fn plain(scene: &Scene, camera: &Camera, (width, height): (u32, u32), look: Look
         for x in 0..width {
             let ray = eye.ray(x, y);
             counts.eye += 1;
-            pixels.push(tracer.seen(&ray, tracer.intersector().closest(&ray), &mut counts).to_array());
+            pixels.push(tracer.seen(&ray, tracer.intersector.closest(&ray), &mut counts).to_array());
         }
     }
     (Image { width, height, pixels }, counts)
@@ -185,7 +185,7 @@ fn surfaces_do_not_shadow_themselves_far_from_the_origin() {
         for _ in 0..2000 {
             let [x, y, z] = [(); 3].map(|()| random.between(-20.0, 20.0) as f32);
             let ray = crate::geometry::Ray::new(eye, (away + Vec3::new(x, y, z) - eye).normalize());
-            let Some(hit) = tracer.intersector().closest(&ray) else { continue };
+            let Some(hit) = tracer.intersector.closest(&ray) else { continue };
             // Between the triangles that are left one sees the inside of those behind, which others may shade.
             if hit.t > eye.distance(away) {
                 continue;
@@ -290,7 +290,7 @@ fn light_is_wholly_mirrored_inside_beyond_the_critical_angle() {
         let direction = Vec3::new(sine, (1.0_f32 - sine * sine).sqrt(), 0.0);
         let ray = crate::geometry::Ray::new(-direction, direction);
         let mut counts = Counts::default();
-        let seen = tracer.seen(&ray, tracer.intersector().closest(&ray), &mut counts);
+        let seen = tracer.seen(&ray, tracer.intersector.closest(&ray), &mut counts);
         assert_eq!((counts.reflection, counts.refraction), expected, "{sine}");
         assert!((seen - Vec3::ONE).abs().max_element() < 1e-5, "no light is lost: {seen}");
     }

@@ -15,6 +15,7 @@ mod walk;
 pub use count::RayCounts;
 pub(super) use count::{Count, Uncounted};
 pub use list::TriangleList;
+use nearest::Nearest;
 use packet::{RAYS, Together, together as walk_together};
 use single::through as walk_single;
 
@@ -63,7 +64,7 @@ macro_rules! on_unit_through {
 }
 
 on_unit_through!(fn through(ray: &Ray) -> Option<Hit> = walk_single, ANY);
-on_unit_through!(fn together(aims: &[Aim; RAYS], span: &Span) -> Together = walk_together);
+on_unit_through!(fn together(aims: &[Aim; RAYS], span: &Span) -> Together = walk_together, ANY);
 
 /// How many packets' rays are asked about one by one, after those of one have come apart, before it is tried again.
 const ALONE: usize = 7;
@@ -97,14 +98,40 @@ impl<T: TriangleTest> WideBvh<T> {
     /// # Panics
     /// If there are not as many `hits` as `rays`.
     pub fn closest_coherent_on(&self, unit: Unit, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        assert_eq!(rays.len(), hits.len(), "a place for the hit of each ray");
+        let one = |ray: &Ray| self.closest_on(unit, ray);
+        let own = |nearest: &Nearest, aim: &Aim| nearest.hit(aim);
+        self.coherent::<_, false>(unit, rays, hits, one, own);
+    }
+
+    /// Whether there is any hit, of rays that go much the same way, by a vector unit of one's choice. Where they turn out
+    /// not to, they are asked about one by one, at little loss.
+    ///
+    /// # Panics
+    /// If there are not as many `occluded` as `rays`.
+    pub fn occluded_coherent_on(&self, unit: Unit, rays: &[Ray], occluded: &mut [bool]) {
+        let one = |ray: &Ray| self.occluded_on(unit, ray);
+        let own = |nearest: &Nearest, _: &Aim| nearest.is_hit();
+        self.coherent::<_, true>(unit, rays, occluded, one, own);
+    }
+
+    /// Answers for rays in packets, or for `one` where that does not pay; `own` is a ray's answer from what its packet
+    /// found.
+    fn coherent<A, const ANY: bool>(
+        &self,
+        unit: Unit,
+        rays: &[Ray],
+        answers: &mut [A],
+        one: impl Fn(&Ray) -> A,
+        own: impl Fn(&Nearest, &Aim) -> A,
+    ) {
+        assert_eq!(rays.len(), answers.len(), "a place for the answer to each ray");
         let mut alone = 0usize;
-        for (rays, hits) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)) {
-            let together = if alone == 0 { self.packet(unit, rays, hits) } else { None };
+        for (rays, answers) in rays.chunks(RAYS).zip(answers.chunks_mut(RAYS)) {
+            let together = if alone == 0 { self.packet::<_, ANY>(unit, rays, answers, &own) } else { None };
             let Some(stayed) = together else {
                 alone = alone.saturating_sub(1);
-                for (ray, hit) in rays.iter().zip(hits) {
-                    *hit = self.closest_on(unit, ray);
+                for (ray, answer) in rays.iter().zip(answers) {
+                    *answer = one(ray);
                 }
                 continue;
             };
@@ -112,9 +139,15 @@ impl<T: TriangleTest> WideBvh<T> {
         }
     }
 
-    /// The nearest hits of a packet, and whether it stayed together. `None`, and no hits, if its rays do not go the same
+    /// The answers of a packet, and whether it stayed together. `None`, and no answers, if its rays do not go the same
     /// way, or are too few.
-    fn packet(&self, unit: Unit, rays: &[Ray], hits: &mut [Option<Hit>]) -> Option<bool> {
+    fn packet<A, const ANY: bool>(
+        &self,
+        unit: Unit,
+        rays: &[Ray],
+        answers: &mut [A],
+        own: impl Fn(&Nearest, &Aim) -> A,
+    ) -> Option<bool> {
         // What is left over at the end is not worth it.
         if rays.len() < RAYS / 2 {
             return None;
@@ -123,9 +156,9 @@ impl<T: TriangleTest> WideBvh<T> {
         for (aim, ray) in aims.iter_mut().zip(rays) {
             *aim = Aim::new(ray, self.scale)?;
         }
-        let found = together::<T, _>(unit, self, &mut Uncounted, &aims, &Span::of(&aims)?);
-        for ((hit, nearest), aim) in hits.iter_mut().zip(&found.nearest).zip(&aims) {
-            *hit = nearest.hit(aim);
+        let found = together::<T, _, ANY>(unit, self, &mut Uncounted, &aims, &Span::of(&aims)?);
+        for ((answer, nearest), aim) in answers.iter_mut().zip(&found.nearest).zip(&aims) {
+            *answer = own(nearest, aim);
         }
         Some(found.stayed)
     }
@@ -154,6 +187,10 @@ impl<T: TriangleTest> Intersector for WideBvh<T> {
 
     fn closest_coherent(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
         self.closest_coherent_on(self.unit, rays, hits);
+    }
+
+    fn occluded_coherent(&self, rays: &[Ray], occluded: &mut [bool]) {
+        self.occluded_coherent_on(self.unit, rays, occluded);
     }
 }
 

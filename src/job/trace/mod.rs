@@ -22,6 +22,7 @@ mod image;
 mod lighting;
 mod list;
 mod shade;
+mod spots;
 mod surface;
 mod waves;
 mod world;

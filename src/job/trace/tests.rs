@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use glam::{Affine3A, Vec2, Vec3};
 
-use super::surface::sample;
+use super::spots::{Spots, Square};
 use super::*;
 use crate::geometry::hit::Cone;
 use crate::geometry::{Camera, Lens, Sphere};
@@ -296,12 +296,16 @@ fn light_is_wholly_mirrored_inside_beyond_the_critical_angle() {
     }
 }
 
+fn colour_at(texture: &Texture, at: Vec2) -> Vec3 {
+    Square::about(at, texture).colour(texture)
+}
+
 #[test]
 fn textures_begin_at_their_upper_left_and_repeat() {
     let [r, g, b, w] = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
     let texture = Texture { name: "t".into(), width: 2, height: 2, pixels: vec![r, g, b, w] };
     for shift in [0.0, 1.0, -3.0] {
-        let at = |u: f32, v: f32| sample(&texture, Vec2::new(u + shift, v - shift));
+        let at = |u: f32, v: f32| colour_at(&texture, Vec2::new(u + shift, v - shift));
         assert_eq!(at(0.25, 0.25), Vec3::X);
         assert_eq!(at(0.75, 0.25), Vec3::Y);
         assert_eq!(at(0.25, 0.75), Vec3::Z);
@@ -309,7 +313,7 @@ fn textures_begin_at_their_upper_left_and_repeat() {
         assert_eq!(at(0.0, 0.25), Vec3::new(0.5, 0.5, 0.0), "over the edge");
     }
     let grey = Texture { name: "g".into(), width: 1, height: 1, pixels: vec![[188; 3]] };
-    assert!((sample(&grey, Vec2::splat(9.9)).x - 0.503).abs() < 1e-3, "sRGB is decoded");
+    assert!((colour_at(&grey, Vec2::splat(9.9)).x - 0.503).abs() < 1e-3, "sRGB is decoded");
 }
 
 #[test]
@@ -386,8 +390,9 @@ fn normals_follow_their_nodes() {
         let [a, b, c] = world.items().triangles[0];
         let out = (a + b + c) / 3.0 * 2.0;
         let ray = crate::geometry::Ray::new(out, -out);
-        let hit = List(world.items()).closest(&ray).expect("it is aimed at");
-        let surface = world.surface(&ray, &hit);
+        let hit = List(world.items()).closest(&ray);
+        let spot = Spots::default().find(&world, &[hit])[0];
+        let surface = world.surface(&ray, &hit.expect("it is aimed at"), &spot);
         let across = (b - a).cross(c - a).normalize();
         assert!(surface.flat.distance(across) < 1e-5);
         // A mirrored mesh is wound the other way, and its normals are outward still.

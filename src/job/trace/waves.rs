@@ -18,6 +18,7 @@ use crate::geometry::{Hit, Ray};
 use super::bounce::Bounce;
 use super::lighting::Lighting;
 use super::shade::faded;
+use super::spots::Spots;
 use super::{Counts, Tracer};
 
 /// Room for waves, to be used again and again: nothing is allocated but where more rays are asked about, or bounce more
@@ -27,6 +28,7 @@ pub(super) struct Waves {
     first: Wave,
     /// Waves that nobody follows now, all of them empty.
     idle: Vec<Wave>,
+    spots: Spots,
     lighting: Lighting,
 }
 
@@ -68,13 +70,14 @@ impl Waves {
         tracer.intersector.closest_coherent(&wave.rays, &mut wave.hits);
         let mut mirrored = self.idle.pop().unwrap_or_default();
         let mut through = self.idle.pop().unwrap_or_default();
-        for (number, (ray, hit)) in wave.rays.iter().zip(&wave.hits).enumerate() {
+        let spots = self.spots.find(tracer.world, &wave.hits);
+        for (number, ((ray, hit), spot)) in wave.rays.iter().zip(&wave.hits).zip(spots).enumerate() {
             let Some(hit) = hit else {
                 wave.colours.push(tracer.look.background);
                 continue;
             };
             counts.deepest = counts.deepest.max(depth);
-            let surface = tracer.world.surface(ray, hit);
+            let surface = tracer.world.surface(ray, hit, spot);
             let bounce = Bounce::new(ray.direction, &surface);
             let mirrors = bounce.mirrored_share(&surface);
             let kept = if surface.material.fresnel { Vec3::ONE - mirrors } else { Vec3::ONE };

@@ -26,7 +26,7 @@ pub(crate) struct Span {
 
 impl Span {
     /// What these rays span. `None` if they do not go much the same way.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn of(aims: &[Aim; 16]) -> Option<Self> {
         let first = &aims[0];
         let like_first = |aim: &Aim| {

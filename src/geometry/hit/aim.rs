@@ -11,10 +11,15 @@ pub(super) const SLACK: f32 = 1.0 / (1 << 20) as f32;
 /// to less than the rounding of its origin.
 pub(super) const LEAST_PART: f32 = 1.0 / (1u128 << 100) as f32;
 
+/// Between these lengths in the scale's, directions are taken as they are: rays from here and there to one light then
+/// all come to it at the same `t`, and go through a hierarchy together.
+const AS_THEY_ARE: std::ops::Range<f32> = 1.0 / 1024.0..1024.0;
+
 /// For the axis where a ray goes most: those that the watertight test calls x, y and z.
 const AXES: [[u8; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
-/// A ray in a scale's lengths, its direction's greatest part between 1 and 2, and what tests ask of it.
+/// A ray in a scale's lengths, and what tests ask of it. Its direction's greatest part is as it is within
+/// [`AS_THEY_ARE`], or else brought to between 1 and 2.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
     pub(super) origin: Vec3A,
@@ -50,7 +55,8 @@ impl Aim {
         let (near, far) = (ray.near - start + 0.0, ray.far - start);
         let own = Vec3A::from(ray.direction);
         let longest = own.abs().max_element();
-        let lengthen = to_one(longest);
+        let is_tame = AS_THEY_ARE.contains(&(longest * scale.factor()));
+        let lengthen = if is_tame { scale.factor() } else { to_one(longest) };
         let origin = Vec3A::from(from) * scale.factor();
         let direction = own * lengthen;
         let sizes = direction.abs();

@@ -65,7 +65,8 @@ macro_rules! on_unit_through {
 on_unit_through!(fn through(ray: &Ray) -> Option<Hit> = walk_single, ANY);
 on_unit_through!(fn together(rays: &[Ray]) -> Option<Together> = walk_together, ANY);
 
-/// How many packets' rays are asked about one by one, after those of one have come apart, before it is tried again.
+/// How many packets' rays are asked about one by one at most, after those of several in a row have come apart, before
+/// it is tried again.
 const ALONE: usize = 7;
 
 impl<T: TriangleTest> WideBvh<T> {
@@ -125,7 +126,8 @@ impl<T: TriangleTest> WideBvh<T> {
         one: impl Fn(&Ray) -> A,
     ) {
         assert_eq!(rays.len(), answers.len(), "a place for the answer to each ray");
-        let mut alone = 0usize;
+        // How many are to be asked about alone, and how many it will be after the next that comes apart.
+        let (mut alone, mut next) = (0usize, 1);
         for (rays, answers) in rays.chunks(RAYS).zip(answers.chunks_mut(RAYS)) {
             let packet = if alone == 0 { self.packet::<ANY>(unit, rays) } else { None };
             let Some(Together { hits, stayed }) = packet else {
@@ -134,7 +136,7 @@ impl<T: TriangleTest> WideBvh<T> {
                 continue;
             };
             answers.iter_mut().zip(hits).for_each(|(own, hit)| *own = answer(hit));
-            alone = if stayed { 0 } else { ALONE };
+            (alone, next) = if stayed { (0, 1) } else { (next, ALONE.min(2 * next + 1)) };
         }
     }
 

@@ -15,12 +15,11 @@ mod walk;
 pub use count::RayCounts;
 pub(super) use count::{Count, Uncounted};
 pub use list::TriangleList;
-use nearest::Nearest;
 use packet::{RAYS, Together, together as walk_together};
 use single::through as walk_single;
 
 use super::{Intersector, WideBvh};
-use crate::geometry::hit::{Aim, Span, TriangleTest};
+use crate::geometry::hit::TriangleTest;
 use crate::geometry::lanes::Kind;
 use crate::geometry::{Hit, Ray, Unit};
 
@@ -64,9 +63,10 @@ macro_rules! on_unit_through {
 }
 
 on_unit_through!(fn through(ray: &Ray) -> Option<Hit> = walk_single, ANY);
-on_unit_through!(fn together(aims: &[Aim; RAYS], span: &Span) -> Together = walk_together, ANY);
+on_unit_through!(fn together(rays: &[Ray]) -> Option<Together> = walk_together, ANY);
 
-/// How many packets' rays are asked about one by one, after those of one have come apart, before it is tried again.
+/// How many packets' rays are asked about one by one at most, after those of several in a row have come apart, before
+/// it is tried again.
 const ALONE: usize = 7;
 
 impl<T: TriangleTest> WideBvh<T> {
@@ -98,9 +98,7 @@ impl<T: TriangleTest> WideBvh<T> {
     /// # Panics
     /// If there are not as many `hits` as `rays`.
     pub fn closest_coherent_on(&self, unit: Unit, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        let one = |ray: &Ray| self.closest_on(unit, ray);
-        let own = |nearest: &Nearest, aim: &Aim| nearest.hit(aim);
-        self.coherent::<_, false>(unit, rays, hits, one, own);
+        self.coherent::<_, false>(unit, rays, hits, |hit| hit, |ray| self.closest_on(unit, ray));
     }
 
     /// Whether there is any hit, of rays that go much the same way, by a vector unit of one's choice. Where they turn out
@@ -109,58 +107,46 @@ impl<T: TriangleTest> WideBvh<T> {
     /// # Panics
     /// If there are not as many `occluded` as `rays`.
     pub fn occluded_coherent_on(&self, unit: Unit, rays: &[Ray], occluded: &mut [bool]) {
-        let one = |ray: &Ray| self.occluded_on(unit, ray);
-        let own = |nearest: &Nearest, _: &Aim| nearest.is_hit();
-        self.coherent::<_, true>(unit, rays, occluded, one, own);
+        self.coherent::<_, true>(
+            unit,
+            rays,
+            occluded,
+            |hit| hit.is_some(),
+            |ray| self.occluded_on(unit, ray),
+        );
     }
 
-    /// Answers for rays in packets, or for `one` where that does not pay; `own` is a ray's answer from what its packet
-    /// found.
+    /// Answers for rays in packets by the hits they have, or for `one` where packets do not pay.
     fn coherent<A, const ANY: bool>(
         &self,
         unit: Unit,
         rays: &[Ray],
         answers: &mut [A],
+        answer: impl Fn(Option<Hit>) -> A,
         one: impl Fn(&Ray) -> A,
-        own: impl Fn(&Nearest, &Aim) -> A,
     ) {
         assert_eq!(rays.len(), answers.len(), "a place for the answer to each ray");
-        let mut alone = 0usize;
+        // How many are to be asked about alone, and how many it will be after the next that comes apart.
+        let (mut alone, mut next) = (0usize, 1);
         for (rays, answers) in rays.chunks(RAYS).zip(answers.chunks_mut(RAYS)) {
-            let together = if alone == 0 { self.packet::<_, ANY>(unit, rays, answers, &own) } else { None };
-            let Some(stayed) = together else {
+            let packet = if alone == 0 { self.packet::<ANY>(unit, rays) } else { None };
+            let Some(Together { hits, stayed }) = packet else {
                 alone = alone.saturating_sub(1);
-                for (ray, answer) in rays.iter().zip(answers) {
-                    *answer = one(ray);
-                }
+                answers.iter_mut().zip(rays).for_each(|(own, ray)| *own = one(ray));
                 continue;
             };
-            alone = if stayed { 0 } else { ALONE };
+            answers.iter_mut().zip(hits).for_each(|(own, hit)| *own = answer(hit));
+            (alone, next) = if stayed { (0, 1) } else { (next, ALONE.min(2 * next + 1)) };
         }
     }
 
-    /// The answers of a packet, and whether it stayed together. `None`, and no answers, if its rays do not go the same
-    /// way, or are too few.
-    fn packet<A, const ANY: bool>(
-        &self,
-        unit: Unit,
-        rays: &[Ray],
-        answers: &mut [A],
-        own: impl Fn(&Nearest, &Aim) -> A,
-    ) -> Option<bool> {
+    /// What comes of a packet; `None` if its rays do not go the same way, or are too few.
+    fn packet<const ANY: bool>(&self, unit: Unit, rays: &[Ray]) -> Option<Together> {
         // What is left over at the end is not worth it.
         if rays.len() < RAYS / 2 {
             return None;
         }
-        let mut aims = [Aim::new(&rays[0], self.scale)?; RAYS];
-        for (aim, ray) in aims.iter_mut().zip(rays) {
-            *aim = Aim::new(ray, self.scale)?;
-        }
-        let found = together::<T, _, ANY>(unit, self, &mut Uncounted, &aims, &Span::of(&aims)?);
-        for ((answer, nearest), aim) in answers.iter_mut().zip(&found.nearest).zip(&aims) {
-            *answer = own(nearest, aim);
-        }
-        Some(found.stayed)
+        together::<T, _, ANY>(unit, self, &mut Uncounted, rays)
     }
 
     #[inline]

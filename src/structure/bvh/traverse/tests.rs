@@ -1,7 +1,6 @@
 //! Every way through a wide hierarchy against the list gone through one by one, and that against f64.
 
 use super::super::{BinaryBvh, BinaryNode, Intersector, WideBvh, leaks, leaks_together};
-use super::nearest::Nearest;
 use super::{RayCounts, TriangleList};
 use crate::geometry::hit::{Fast, TriangleTest, Watertight};
 use crate::geometry::oracle::{Crossing, nearest_crossing};
@@ -228,10 +227,9 @@ fn packets_that_come_apart_tell_what_the_list_tells() {
     assert!(hold_both(&triangles, &bvh, &rays) > 300);
     let wide = WideBvh::<Watertight>::new(&bvh, &triangles);
     for unit in Unit::all() {
-        let is_hit = |nearest: &Nearest, _: &_| nearest.is_hit();
         let stayed = |rays: &[Ray]| {
-            let closest = wide.packet::<_, false>(unit, rays, &mut [false; 16], is_hit);
-            [closest, wide.packet::<_, true>(unit, rays, &mut [false; 16], is_hit)]
+            [wide.packet::<false>(unit, rays), wide.packet::<true>(unit, rays)]
+                .map(|packet| packet.map(|packet| packet.stayed))
         };
         let packets: Vec<_> = rays.chunks(16).map(stayed).collect();
         for way in [0, 1] {

@@ -47,14 +47,15 @@ struct Way {
 }
 
 impl Lighting {
-    /// Adds a surface whose light `of` is to have, unless light makes nothing of it.
+    /// Adds a surface whose light `of` is to have, unless light makes nothing of it; `mirrored` is the mirrored way.
     pub(super) fn add(
         &mut self,
         tracer: &Tracer<'_>,
         of: usize,
-        bounce: &Bounce,
         surface: &Surface<'_>,
         kept: Vec3,
+        bounce: &Bounce,
+        mirrored: Vec3,
     ) {
         let (diffuse, highlight) = (surface.diffuse * kept, surface.material.highlight);
         let lights = tracer.world.lights().len();
@@ -67,7 +68,7 @@ impl Lighting {
             origin: bounce.above(surface),
             flat: bounce.flat,
             smooth: bounce.smooth,
-            mirrored: bounce.mirrored(),
+            mirrored,
             diffuse,
             highlight,
             exponent: surface.material.exponent,

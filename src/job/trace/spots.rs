@@ -76,14 +76,14 @@ static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
 });
 
 /// The four pixels of a texture about a place, and how far the place is from the first to the others.
-pub(super) struct Square {
+struct Square {
     /// By number: upper left, upper right, lower left, lower right.
     pixels: [usize; 4],
     share: Vec2,
 }
 
 impl Square {
-    pub(super) fn about(at: Vec2, texture: &Texture) -> Self {
+    fn about(at: Vec2, texture: &Texture) -> Self {
         let size = Vec2::new(texture.width as f32, texture.height as f32);
         // Pixels count from their middles.
         let place = (at - at.floor()) * size - 0.5;
@@ -101,7 +101,7 @@ impl Square {
     }
 
     /// The colour between them.
-    pub(super) fn colour(&self, texture: &Texture) -> Vec3 {
+    fn colour(&self, texture: &Texture) -> Vec3 {
         let [a, b, c, d] = self.pixels.map(|pixel| {
             let [r, g, b] = texture.pixels[pixel].map(|code| LINEAR[code as usize]);
             Vec3::new(r, g, b)
@@ -110,5 +110,46 @@ impl Square {
         let upper = a * (1.0 - share.x) + b * share.x;
         let lower = c * (1.0 - share.x) + d * share.x;
         upper * (1.0 - share.y) + lower * share.y
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn textures_begin_at_their_upper_left_and_repeat() {
+        let [r, g, b, w] = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
+        let texture = Texture { name: "t".into(), width: 2, height: 2, pixels: vec![r, g, b, w] };
+        for shift in [0.0, 1.0, -3.0] {
+            let at =
+                |u: f32, v: f32| Square::about(Vec2::new(u + shift, v - shift), &texture).colour(&texture);
+            assert_eq!(at(0.25, 0.25), Vec3::X);
+            assert_eq!(at(0.75, 0.25), Vec3::Y);
+            assert_eq!(at(0.25, 0.75), Vec3::Z);
+            assert_eq!(at(0.5, 0.25), Vec3::new(0.5, 0.5, 0.0));
+            assert_eq!(at(0.0, 0.25), Vec3::new(0.5, 0.5, 0.0), "over the edge");
+        }
+        let grey = Texture { name: "g".into(), width: 1, height: 1, pixels: vec![[188; 3]] };
+        assert!(
+            (Square::about(Vec2::splat(9.9), &grey).colour(&grey).x - 0.503).abs() < 1e-3,
+            "sRGB is decoded"
+        );
+    }
+
+    /// Where no pixel is asked for by a number that is none.
+    #[test]
+    fn places_anywhere_are_within_the_texture() {
+        let edge = [0.0, -1e-9, 1.0, 1.0 - f32::EPSILON, -1e30, f32::NAN, f32::INFINITY, 0.49999997];
+        for (width, height) in [(1, 1), (1, 3), (2, 1), (3, 5), (640, 481)] {
+            let count = (width * height) as usize;
+            let texture = Texture { name: "t".into(), width, height, pixels: vec![[255; 3]; count] };
+            for (u, v) in edge.iter().flat_map(|u| edge.map(|v| (*u, v))) {
+                let square = Square::about(Vec2::new(u, v), &texture);
+                assert!(square.pixels.iter().all(|pixel| *pixel < count), "{u} {v} of {width} x {height}");
+                let is_place = u.is_finite() && v.is_finite();
+                assert!(!is_place || square.colour(&texture).distance(Vec3::ONE) < 1e-6);
+            }
+        }
     }
 }

@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use glam::{Affine3A, Vec2, Vec3};
 
-use super::spots::{Spots, Square};
+use super::spots::Spots;
 use super::*;
 use crate::geometry::hit::Cone;
 use crate::geometry::{Camera, Lens, Sphere};
@@ -294,26 +294,6 @@ fn light_is_wholly_mirrored_inside_beyond_the_critical_angle() {
         assert_eq!((counts.reflection, counts.refraction), expected, "{sine}");
         assert!((seen - Vec3::ONE).abs().max_element() < 1e-5, "no light is lost: {seen}");
     }
-}
-
-fn colour_at(texture: &Texture, at: Vec2) -> Vec3 {
-    Square::about(at, texture).colour(texture)
-}
-
-#[test]
-fn textures_begin_at_their_upper_left_and_repeat() {
-    let [r, g, b, w] = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
-    let texture = Texture { name: "t".into(), width: 2, height: 2, pixels: vec![r, g, b, w] };
-    for shift in [0.0, 1.0, -3.0] {
-        let at = |u: f32, v: f32| colour_at(&texture, Vec2::new(u + shift, v - shift));
-        assert_eq!(at(0.25, 0.25), Vec3::X);
-        assert_eq!(at(0.75, 0.25), Vec3::Y);
-        assert_eq!(at(0.25, 0.75), Vec3::Z);
-        assert_eq!(at(0.5, 0.25), Vec3::new(0.5, 0.5, 0.0));
-        assert_eq!(at(0.0, 0.25), Vec3::new(0.5, 0.5, 0.0), "over the edge");
-    }
-    let grey = Texture { name: "g".into(), width: 1, height: 1, pixels: vec![[188; 3]] };
-    assert!((colour_at(&grey, Vec2::splat(9.9)).x - 0.503).abs() < 1e-3, "sRGB is decoded");
 }
 
 #[test]

@@ -80,12 +80,13 @@ impl Waves {
             let surface = tracer.world.surface(ray, hit, spot);
             let bounce = Bounce::new(ray.direction, &surface);
             let mirrors = bounce.mirrored_share(&surface);
+            let way = bounce.mirrored();
             let kept = if surface.material.fresnel { Vec3::ONE - mirrors } else { Vec3::ONE };
             wave.colours.push(surface.ambient * kept * tracer.look.ambient);
-            self.lighting.add(tracer, number, &bounce, &surface, kept);
+            self.lighting.add(tracer, number, &surface, kept, &bounce, way);
             if depth < tracer.look.depth {
                 if mirrors != Vec3::ZERO {
-                    mirrored.add(number, mirrors, Ray::new(bounce.above(&surface), bounce.mirrored()));
+                    mirrored.add(number, mirrors, Ray::new(bounce.above(&surface), way));
                 }
                 let lets = surface.material.transmission * kept;
                 if lets != Vec3::ZERO

@@ -11,10 +11,15 @@ pub(super) const SLACK: f32 = 1.0 / (1 << 20) as f32;
 /// to less than the rounding of its origin.
 pub(super) const LEAST_PART: f32 = 1.0 / (1u128 << 100) as f32;
 
+/// Between these lengths in the scale's, directions are taken as they are: rays from here and there to one light then
+/// all come to it at the same `t`, and go through a hierarchy together.
+const AS_THEY_ARE: std::ops::Range<f32> = 1.0 / 1024.0..1024.0;
+
 /// For the axis where a ray goes most: those that the watertight test calls x, y and z.
 const AXES: [[u8; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
-/// A ray in a scale's lengths, its direction's greatest part between 1 and 2, and what tests ask of it.
+/// A ray in a scale's lengths, and what tests ask of it. Its direction's greatest part is as it is within
+/// [`AS_THEY_ARE`], or else brought to between 1 and 2.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
     pub(super) origin: Vec3A,
@@ -50,7 +55,8 @@ impl Aim {
         let (near, far) = (ray.near - start + 0.0, ray.far - start);
         let own = Vec3A::from(ray.direction);
         let longest = own.abs().max_element();
-        let lengthen = to_one(longest);
+        let is_tame = AS_THEY_ARE.contains(&(longest * scale.factor()));
+        let lengthen = if is_tame { scale.factor() } else { to_one(longest) };
         let origin = Vec3A::from(from) * scale.factor();
         let direction = own * lengthen;
         let sizes = direction.abs();
@@ -143,44 +149,59 @@ impl<L: Lanes> Beam<L> {
         }
     }
 
-    /// Some rays, one a lane, which have octant and axes in common.
+    /// Some rays of several, from `from` on, one a lane.
     ///
     /// # Safety
     /// The processor has the lanes' vector unit, and there are as many rays from `from` on as lanes.
     #[inline(always)]
-    pub(crate) unsafe fn several(aims: &[Aim; 16], from: usize) -> Self {
-        // By number of the field, then by ray.
-        let mut columns = [[0.0f32; 16]; 18];
-        for (lane, aim) in aims[from..from + L::LEN].iter().enumerate() {
-            let Aim { origin, direction, first_rate, last_rate, shear, from, .. } = aim;
-            let [origin, direction] = [origin, direction].map(|part| part.to_array());
-            let [first_rate, last_rate] = [first_rate, last_rate].map(|part| part.to_array());
-            let parts = [origin, direction, first_rate, last_rate, *shear, *from];
-            for (column, value) in columns.iter_mut().zip(parts.as_flattened()) {
-                column[lane] = *value;
-            }
-        }
-        let three = columns.as_chunks::<3>().0;
-        // SAFETY: the processor is the caller's, and no vector has more than 16 lanes.
+    pub(crate) unsafe fn several(rays: &Columns, from: usize) -> Self {
+        let three = rays.parts.as_chunks::<3>().0;
+        // SAFETY: the processor is the caller's, and so is what there is to load.
         unsafe {
             Self {
-                origin: load(&three[0]),
-                direction: load(&three[1]),
-                first_rate: load(&three[2]),
-                last_rate: load(&three[3]),
-                shear: load(&three[4]),
-                from: load(&three[5]),
-                axes: axes(&aims[0]),
-                rises: rises(&aims[0]),
+                origin: load(&three[0], from),
+                direction: load(&three[1], from),
+                first_rate: load(&three[2], from),
+                last_rate: load(&three[3], from),
+                shear: load(&three[4], from),
+                from: load(&three[5], from),
+                axes: rays.axes,
+                rises: rays.rises,
             }
         }
     }
 }
 
+/// What beams hold of 16 rays that have octant and axes in common.
+#[derive(Clone, Copy)]
+pub(crate) struct Columns {
+    /// By number of the part, then by ray.
+    parts: [[f32; 16]; 18],
+    axes: [usize; 3],
+    rises: [bool; 3],
+}
+
+impl Columns {
+    #[inline(always)]
+    pub(crate) fn of(aims: &[Aim; 16]) -> Self {
+        let mut columns = [[0.0; 16]; 18];
+        for (ray, aim) in aims.iter().enumerate() {
+            let Aim { origin, direction, first_rate, last_rate, shear, from, .. } = aim;
+            let [origin, direction] = [origin, direction].map(|part| part.to_array());
+            let [first_rate, last_rate] = [first_rate, last_rate].map(|part| part.to_array());
+            let parts = [origin, direction, first_rate, last_rate, *shear, *from];
+            for (column, value) in columns.iter_mut().zip(parts.as_flattened()) {
+                column[ray] = *value;
+            }
+        }
+        Self { parts: columns, axes: axes(&aims[0]), rises: rises(&aims[0]) }
+    }
+}
+
 #[inline(always)]
-unsafe fn load<L: Lanes>([x, y, z]: &[[f32; 16]; 3]) -> [L; 3] {
-    // SAFETY: the processor is the caller's, and no vector has more than 16 lanes.
-    unsafe { [L::load(x, 0), L::load(y, 0), L::load(z, 0)] }
+unsafe fn load<L: Lanes>([x, y, z]: &[[f32; 16]; 3], from: usize) -> [L; 3] {
+    // SAFETY: the processor and what there is to load are the caller's.
+    unsafe { [L::load(x, from), L::load(y, from), L::load(z, from)] }
 }
 
 /// By axis, which of six rows of planes rays come to first.

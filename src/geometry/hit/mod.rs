@@ -26,7 +26,7 @@ pub use scale::Scale;
 pub use sphere::sphere;
 pub use watertight::Watertight;
 
-pub(crate) use aim::{Aim, Beam};
+pub(crate) use aim::{Aim, Beam, Columns};
 pub(crate) use probe::Probe;
 pub(crate) use slab::slab;
 pub(crate) use span::{Span, Spread};

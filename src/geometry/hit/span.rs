@@ -26,13 +26,14 @@ pub(crate) struct Span {
 
 impl Span {
     /// What these rays span. `None` if they do not go much the same way.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn of(aims: &[Aim; 16]) -> Option<Self> {
         let first = &aims[0];
+        let apart = APART * first.direction.abs().max_element();
         let like_first = |aim: &Aim| {
             aim.octant == first.octant
                 && aim.axes == first.axes
-                && (aim.direction - first.direction).abs().max_element() <= APART
+                && (aim.direction - first.direction).abs().max_element() <= apart
                 && aim.last_rate.is_finite()
         };
         if !aims.iter().all(like_first) {

@@ -135,20 +135,29 @@ impl Flocks {
 
     /// Tells each hit on the way, and is told how far the ray reaches from then on.
     fn walk(&self, ray: &Ray, mut hit: impl FnMut(u32, f32) -> f32) {
+        // Of one place the hierarchy over places tells no more than the flock's own.
+        if let [only] = &self.stand[..] {
+            self.walk_in(only, ray, ray.far, &mut hit);
+            return;
+        }
         self.top.walk(&FineRay::from(ray), self.error, |place, far| {
-            let standing = &self.stand[place];
-            let own = standing.place.as_ref().map_or_else(|| FineRay::from(ray), |place| place.take_in(ray));
-            let cloud = &self.clouds[standing.cloud as usize];
-            let mut reach = far;
-            cloud.bvh.walk(&FineRay { far, ..own }, 0.0, |place, far| {
-                let (is, number) = &cloud.shapes[place];
-                if let Some(t) = shape(FineRay { far, ..own }, is) {
-                    reach = hit(standing.first + number, t);
-                }
-                reach
-            });
+            self.walk_in(&self.stand[place], ray, far, &mut hit)
+        });
+    }
+
+    /// The same in one place, the ray reaching so far; tells how far it reaches then.
+    fn walk_in(&self, standing: &Standing, ray: &Ray, far: f32, mut hit: impl FnMut(u32, f32) -> f32) -> f32 {
+        let own = standing.place.as_ref().map_or_else(|| FineRay::from(ray), |place| place.take_in(ray));
+        let cloud = &self.clouds[standing.cloud as usize];
+        let mut reach = far;
+        cloud.bvh.walk(&FineRay { far, ..own }, 0.0, |place, far| {
+            let (is, number) = &cloud.shapes[place];
+            if let Some(t) = shape(FineRay { far, ..own }, is) {
+                reach = hit(standing.first + number, t);
+            }
             reach
         });
+        reach
     }
 }
 

@@ -2,13 +2,11 @@
 
 use std::ops::Range;
 
-use glam::Vec3;
-
-use crate::geometry::Ray;
 use crate::machine::{Machine, Processor, Slot};
 use crate::scheme::tiles::TileWork;
 
 use super::film::Claim;
+use super::waves::Waves;
 use super::{Counts, Eye, Film, TileCosts, Tracer};
 
 /// A picture cut into tiles, numbered row by row; those at its right and lower edge may be smaller.
@@ -139,6 +137,10 @@ impl<'a, M: Machine> Frame<'a, M> {
     /// If another processor is at this tile.
     pub(super) fn trace(&self, tile: usize, counts: &mut Counts) {
         let claim = self.film.claim(tile);
+        Waves::lent(|waves| self.trace_claimed(&claim, tile, waves, counts));
+    }
+
+    fn trace_claimed(&self, claim: &Claim<'_>, tile: usize, waves: &mut Waves, counts: &mut Counts) {
         let (across, down) = self.tiles.pixels(tile);
         let squares = down.clone().step_by(SQUARE).flat_map(|top| {
             let lefts = across.clone().step_by(SQUARE);
@@ -148,13 +150,13 @@ impl<'a, M: Machine> Frame<'a, M> {
         let mut count = 0;
         for (left, top) in squares {
             if count + SQUARE * SQUARE > TOGETHER {
-                self.trace_pixels(&claim, &pixels[..count], counts);
+                self.trace_pixels(claim, &pixels[..count], waves, counts);
                 count = 0;
             }
             for y in top..down.end.min(top + SQUARE as u32) {
                 for x in left..across.end.min(left + SQUARE as u32) {
                     if let Some(known) = self.draft.and_then(|draft| draft.known(x, y)) {
-                        self.write(&claim, (x, y), known);
+                        self.write(claim, (x, y), known);
                         continue;
                     }
                     pixels[count] = (x, y);
@@ -162,7 +164,7 @@ impl<'a, M: Machine> Frame<'a, M> {
                 }
             }
         }
-        self.trace_pixels(&claim, &pixels[..count], counts);
+        self.trace_pixels(claim, &pixels[..count], waves, counts);
     }
 
     /// Writes a pixel of a claimed tile: its colour and distance.
@@ -173,18 +175,11 @@ impl<'a, M: Machine> Frame<'a, M> {
     }
 
     /// Traces some pixels of a claimed tile, not more than are asked about together.
-    fn trace_pixels(&self, claim: &Claim<'_>, pixels: &[(u32, u32)], counts: &mut Counts) {
-        let mut rays = [Ray::new(Vec3::ZERO, Vec3::ZERO); TOGETHER];
-        let mut hits = [None; TOGETHER];
-        let (rays, hits) = (&mut rays[..pixels.len()], &mut hits[..pixels.len()]);
-        for (ray, (x, y)) in rays.iter_mut().zip(pixels) {
-            *ray = self.eye.ray(*x, *y);
-        }
-        self.tracer.intersector().closest_coherent(rays, hits);
-        counts.eye += rays.len() as u64;
-        for ((place, ray), hit) in pixels.iter().zip(rays).zip(hits) {
-            let [r, g, b] = self.tracer.seen(ray, *hit, counts).to_array();
-            self.write(claim, *place, [r, g, b, hit.map_or(f32::INFINITY, |hit| hit.t)]);
+    fn trace_pixels(&self, claim: &Claim<'_>, pixels: &[(u32, u32)], waves: &mut Waves, counts: &mut Counts) {
+        let rays = pixels.iter().map(|(x, y)| self.eye.ray(*x, *y));
+        for (place, (colour, far)) in pixels.iter().zip(waves.seen(&self.tracer, rays, counts)) {
+            let [r, g, b] = colour.to_array();
+            self.write(claim, *place, [r, g, b, far]);
         }
     }
 }
@@ -215,9 +210,11 @@ mod tests {
     use std::panic::{AssertUnwindSafe, catch_unwind};
     use std::sync::Barrier;
 
+    use glam::Vec3;
+
     use super::super::{Look, World};
     use super::*;
-    use crate::geometry::{Camera, Hit, Lens};
+    use crate::geometry::{Camera, Hit, Lens, Ray};
     use crate::machine::Threads;
     use crate::scene::Scene;
     use crate::structure::bvh::Intersector;

@@ -245,6 +245,15 @@ impl Intersector for Hierarchy {
             }
         }
     }
+
+    fn occluded_coherent(&self, rays: &[Ray], occluded: &mut [bool]) {
+        each!(&self.triangles, bvh => bvh.occluded_coherent(rays, occluded));
+        if !self.others.is_empty() {
+            for (ray, occluded) in rays.iter().zip(occluded) {
+                *occluded = *occluded || self.others.occluded(ray);
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -300,8 +309,11 @@ mod tests {
                 let mut together = vec![None; rays.len()];
                 hierarchy.closest_coherent(&rays, &mut together);
                 assert_eq!(found, together, "{}", about.name);
-                for (ray, hit) in rays.iter().zip(&found) {
+                let mut hidden = vec![false; rays.len()];
+                hierarchy.occluded_coherent(&rays, &mut hidden);
+                for ((ray, hit), hidden) in rays.iter().zip(&found).zip(hidden) {
                     assert_eq!(hierarchy.occluded(ray), hit.is_some(), "{} {ray:?}", about.name);
+                    assert_eq!(hidden, hit.is_some(), "{} {ray:?} together with others", about.name);
                 }
                 assert_eq!(*expected.get_or_insert_with(|| found.clone()), found, "{}", about.name);
             }

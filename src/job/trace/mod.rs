@@ -10,6 +10,7 @@
 //! The picture is the same bit for bit for every scheme, machine and processor count: a pixel depends on nothing but
 //! its own rays, a hit is the same whatever answers for it, and no sum runs over processors.
 
+mod bounce;
 mod costs;
 mod counts;
 mod eye;
@@ -18,10 +19,13 @@ mod flocks;
 mod frame;
 mod hierarchy;
 mod image;
+mod lighting;
 mod list;
 mod shade;
+mod spots;
 mod surface;
 mod video;
+mod waves;
 mod world;
 
 pub use costs::{Costed, TileCosts};
@@ -39,4 +43,8 @@ pub use world::{Items, World};
 #[cfg(test)]
 mod level_tests;
 #[cfg(test)]
+mod recursive;
+#[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod wave_tests;

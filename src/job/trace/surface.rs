@@ -2,14 +2,15 @@
 
 use std::sync::LazyLock;
 
-use glam::{Affine3A, DMat3, DVec3, Vec2, Vec3};
+use glam::{Affine3A, DMat3, DVec3, Vec3};
 
 use crate::geometry::{FineRay, Hit, Ray};
-use crate::scene::{Material, Primitive, Shape, Texture};
+use crate::scene::{Material, Primitive, Shape};
 use crate::structure::bvh::placed_box;
 
 use super::World;
 use super::flocks::way_in;
+use super::spots::Spot;
 
 /// How far from a surface the rays that leave it start, as a share of the greatest coordinate of the shape: 32 units
 /// in the last place of it. What is computed of a shape is wrong by a few of those, wherever it lies and however large
@@ -35,21 +36,21 @@ pub(super) struct Surface<'a> {
 static UNKNOWN: LazyLock<Material> = LazyLock::new(Material::default);
 
 impl World {
-    fn material(&self, number: Option<u32>) -> &Material {
+    pub(super) fn material(&self, number: Option<u32>) -> &Material {
         number.map_or(&UNKNOWN, |number| &self.scene.materials[number as usize])
     }
 
-    /// What is where a ray met an item.
-    pub(super) fn surface(&self, ray: &Ray, hit: &Hit) -> Surface<'_> {
+    /// What is where a ray met an item, whose spot it is.
+    pub(super) fn surface(&self, ray: &Ray, hit: &Hit, spot: &Spot) -> Surface<'_> {
         if (hit.item as usize) < self.triangles() {
-            return self.on_triangle(ray, hit);
+            return self.on_triangle(ray, hit, spot);
         }
         let (primitive, transform) = self.primitive(hit.item);
         self.on_primitive(ray, hit.t, primitive, transform)
     }
 
-    fn on_triangle(&self, ray: &Ray, hit: &Hit) -> Surface<'_> {
-        let placed = self.placed(hit.item);
+    fn on_triangle(&self, ray: &Ray, hit: &Hit, spot: &Spot) -> Surface<'_> {
+        let placed = self.placed(spot.place);
         let corners = placed.corners;
         let [a, b, c] = corners.map(|corner| corner.as_dvec3());
         let (u, v) = (f64::from(hit.u), f64::from(hit.v));
@@ -66,15 +67,9 @@ impl World {
             unit((placed.normals * normal).as_dvec3())
         });
         let material = self.material(shading.materials.of(placed.triangle));
-        let texture = material.texture.map(|texture| &self.scene.textures[texture as usize]);
-        let coordinates = shading.coordinates.of(placed.triangle, vertices);
-        let colour = texture
-            .zip(coordinates)
-            .map(|(texture, [a, b, c])| sample(texture, a * weights[0] + b * weights[1] + c * weights[2]));
         let greatest = corners.iter().fold(0.0, |most: f32, corner| most.max(corner.abs().max_element()));
-        let colour = colour.unwrap_or(Vec3::ONE);
         let (diffuse, ambient) =
-            (material.diffuse * colour, material.ambient.unwrap_or(material.diffuse) * colour);
+            (material.diffuse * spot.tint, material.ambient.unwrap_or(material.diffuse) * spot.tint);
         let (smooth, apart) = (smooth.unwrap_or(flat), APART * greatest);
         Surface { point, flat, smooth, material, diffuse, ambient, apart }
     }
@@ -129,31 +124,4 @@ fn normals(matrix: DMat3) -> DMat3 {
 /// Of unit length; none if it has no direction.
 fn unit(vector: DVec3) -> Option<Vec3> {
     vector.try_normalize().map(|unit| unit.as_vec3())
-}
-
-/// Linear colours of the 256 codes of sRGB (IEC 61966-2-1).
-static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
-    std::array::from_fn(|code| {
-        let coded = code as f64 / 255.0;
-        let linear = if coded <= 0.04045 { coded / 12.92 } else { ((coded + 0.055) / 1.055).powf(2.4) };
-        linear as f32
-    })
-});
-
-/// The colour of a texture, between the four pixels about a place.
-pub(super) fn sample(texture: &Texture, at: Vec2) -> Vec3 {
-    let size = Vec2::new(texture.width as f32, texture.height as f32);
-    // Pixels count from their middles.
-    let place = (at - at.floor()) * size - 0.5;
-    let low = place.floor();
-    let share = place - low;
-    let wrapped = |at: f32, count: u32| (at as i64).rem_euclid(i64::from(count)) as usize;
-    let pixel = |x: f32, y: f32| {
-        let (x, y) = (wrapped(low.x + x, texture.width), wrapped(low.y + y, texture.height));
-        let [r, g, b] = texture.pixels[y * texture.width as usize + x].map(|code| LINEAR[code as usize]);
-        Vec3::new(r, g, b)
-    };
-    let upper = pixel(0.0, 0.0) * (1.0 - share.x) + pixel(1.0, 0.0) * share.x;
-    let lower = pixel(0.0, 1.0) * (1.0 - share.x) + pixel(1.0, 1.0) * share.x;
-    upper * (1.0 - share.y) + lower * share.y
 }

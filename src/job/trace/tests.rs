@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use glam::{Affine3A, Vec2, Vec3};
 
-use super::surface::sample;
+use super::spots::Spots;
 use super::*;
 use crate::geometry::hit::Cone;
 use crate::geometry::{Camera, Lens, Sphere};
@@ -71,7 +71,7 @@ fn plain(scene: &Scene, camera: &Camera, (width, height): (u32, u32), look: Look
         for x in 0..width {
             let ray = eye.ray(x, y);
             counts.eye += 1;
-            pixels.push(tracer.seen(&ray, tracer.intersector().closest(&ray), &mut counts).to_array());
+            pixels.push(tracer.seen(&ray, tracer.intersector.closest(&ray), &mut counts).to_array());
         }
     }
     (Image { width, height, pixels }, counts)
@@ -185,7 +185,7 @@ fn surfaces_do_not_shadow_themselves_far_from_the_origin() {
         for _ in 0..2000 {
             let [x, y, z] = [(); 3].map(|()| random.between(-20.0, 20.0) as f32);
             let ray = crate::geometry::Ray::new(eye, (away + Vec3::new(x, y, z) - eye).normalize());
-            let Some(hit) = tracer.intersector().closest(&ray) else { continue };
+            let Some(hit) = tracer.intersector.closest(&ray) else { continue };
             // Between the triangles that are left one sees the inside of those behind, which others may shade.
             if hit.t > eye.distance(away) {
                 continue;
@@ -290,26 +290,10 @@ fn light_is_wholly_mirrored_inside_beyond_the_critical_angle() {
         let direction = Vec3::new(sine, (1.0_f32 - sine * sine).sqrt(), 0.0);
         let ray = crate::geometry::Ray::new(-direction, direction);
         let mut counts = Counts::default();
-        let seen = tracer.seen(&ray, tracer.intersector().closest(&ray), &mut counts);
+        let seen = tracer.seen(&ray, tracer.intersector.closest(&ray), &mut counts);
         assert_eq!((counts.reflection, counts.refraction), expected, "{sine}");
         assert!((seen - Vec3::ONE).abs().max_element() < 1e-5, "no light is lost: {seen}");
     }
-}
-
-#[test]
-fn textures_begin_at_their_upper_left_and_repeat() {
-    let [r, g, b, w] = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
-    let texture = Texture { name: "t".into(), width: 2, height: 2, pixels: vec![r, g, b, w] };
-    for shift in [0.0, 1.0, -3.0] {
-        let at = |u: f32, v: f32| sample(&texture, Vec2::new(u + shift, v - shift));
-        assert_eq!(at(0.25, 0.25), Vec3::X);
-        assert_eq!(at(0.75, 0.25), Vec3::Y);
-        assert_eq!(at(0.25, 0.75), Vec3::Z);
-        assert_eq!(at(0.5, 0.25), Vec3::new(0.5, 0.5, 0.0));
-        assert_eq!(at(0.0, 0.25), Vec3::new(0.5, 0.5, 0.0), "over the edge");
-    }
-    let grey = Texture { name: "g".into(), width: 1, height: 1, pixels: vec![[188; 3]] };
-    assert!((sample(&grey, Vec2::splat(9.9)).x - 0.503).abs() < 1e-3, "sRGB is decoded");
 }
 
 #[test]
@@ -386,8 +370,9 @@ fn normals_follow_their_nodes() {
         let [a, b, c] = world.items().triangles[0];
         let out = (a + b + c) / 3.0 * 2.0;
         let ray = crate::geometry::Ray::new(out, -out);
-        let hit = List(world.items()).closest(&ray).expect("it is aimed at");
-        let surface = world.surface(&ray, &hit);
+        let hit = List(world.items()).closest(&ray);
+        let spot = Spots::default().find(&world, &[hit])[0];
+        let surface = world.surface(&ray, &hit.expect("it is aimed at"), &spot);
         let across = (b - a).cross(c - a).normalize();
         assert!(surface.flat.distance(across) < 1e-5);
         // A mirrored mesh is wound the other way, and its normals are outward still.

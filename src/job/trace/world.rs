@@ -50,6 +50,8 @@ pub struct World {
     items: OnceLock<Items>,
     /// One for each node that places a mesh, in the order of their triangles.
     runs: Vec<Placement>,
+    /// The first triangle of each run: what is searched, close together.
+    firsts: Vec<u32>,
     /// How many triangles there are in all.
     triangles: usize,
     flocks: Vec<FlockRun>,
@@ -64,6 +66,15 @@ pub(super) struct FlockRun {
     pub(super) first: u32,
     pub(super) flock: u32,
     pub(super) transform: Affine3A,
+}
+
+/// Where a triangle is listed.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Place {
+    /// Which node's mesh, by number among those that place one.
+    run: u32,
+    /// By number in the mesh.
+    pub(super) triangle: u32,
 }
 
 /// A triangle as the mesh it belongs to knows it.
@@ -88,6 +99,7 @@ impl World {
             scene,
             items: OnceLock::new(),
             runs: Vec::new(),
+            firsts: Vec::new(),
             triangles: 0,
             flocks: Vec::new(),
             lights,
@@ -133,6 +145,8 @@ impl World {
             let first = take(self.scene.meshes[mesh as usize].triangles.len());
             self.runs.push(Placement { mesh, first, transform: *transform });
         }
+        self.firsts.clear();
+        self.firsts.extend(self.runs.iter().map(|run| run.first));
         self.triangles = take(self.scene.primitives.len()) as usize;
         self.flocks.clear();
         for (number, flock) in (0..).zip(&self.scene.flocks) {
@@ -183,7 +197,7 @@ impl World {
 
     /// The corners of a triangle, by item number, in metres; none of what is no triangle.
     pub fn corners(&self, item: u32) -> Option<[Vec3; 3]> {
-        ((item as usize) < self.triangles).then(|| self.placed(item).corners)
+        ((item as usize) < self.triangles).then(|| self.placed(self.place_of(item)).corners)
     }
 
     /// Where each mesh stands.
@@ -196,14 +210,25 @@ impl World {
         &self.flocks
     }
 
-    /// A triangle, by item number.
-    pub(super) fn placed(&self, item: u32) -> Placed<'_> {
-        let run = &self.runs[self.runs.partition_point(|run| run.first <= item) - 1];
-        let mesh = &self.scene.meshes[run.mesh as usize];
-        let triangle = (item - run.first) as usize;
-        let place = |vertex: u32| run.transform.transform_point3(mesh.positions[vertex as usize]);
-        let corners = mesh.triangles[triangle].map(place);
-        Placed { mesh, triangle, corners, normals: cofactors(run.transform.matrix3.into()) }
+    /// Where a triangle is listed, by item number.
+    pub(super) fn place_of(&self, item: u32) -> Place {
+        let run = self.firsts.partition_point(|first| *first <= item) - 1;
+        Place { run: run as u32, triangle: item - self.firsts[run] }
+    }
+
+    /// The mesh of a triangle.
+    pub(super) fn mesh(&self, place: Place) -> &Mesh {
+        &self.scene.meshes[self.runs[place.run as usize].mesh as usize]
+    }
+
+    /// A triangle in the world.
+    pub(super) fn placed(&self, place: Place) -> Placed<'_> {
+        let transform = &self.runs[place.run as usize].transform;
+        let mesh = self.mesh(place);
+        let triangle = place.triangle as usize;
+        let put = |vertex: u32| transform.transform_point3(mesh.positions[vertex as usize]);
+        let corners = mesh.triangles[triangle].map(put);
+        Placed { mesh, triangle, corners, normals: cofactors(transform.matrix3.into()) }
     }
 
     /// A sphere or cone, by item number; and from its space to the world's, where that is not the same.

@@ -40,4 +40,16 @@ pub trait Intersector: Sync {
             *hit = self.closest(ray);
         }
     }
+
+    /// Whether there is any hit, of rays as those of [`Intersector::closest_coherent`], or that end near one another as
+    /// those towards one light do: the same as [`Intersector::occluded`] tells of each.
+    ///
+    /// # Panics
+    /// If there are not as many `occluded` as `rays`.
+    fn occluded_coherent(&self, rays: &[Ray], occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len(), "a place for the answer to each ray");
+        for (ray, occluded) in rays.iter().zip(occluded) {
+            *occluded = self.occluded(ray);
+        }
+    }
 }

@@ -19,7 +19,7 @@ use packet::{RAYS, Together, together as walk_together};
 use single::through as walk_single;
 
 use super::{Intersector, WideBvh};
-use crate::geometry::hit::{Aim, Span, TriangleTest};
+use crate::geometry::hit::TriangleTest;
 use crate::geometry::lanes::Kind;
 use crate::geometry::{Hit, Ray, Unit};
 
@@ -63,9 +63,10 @@ macro_rules! on_unit_through {
 }
 
 on_unit_through!(fn through(ray: &Ray) -> Option<Hit> = walk_single, ANY);
-on_unit_through!(fn together(aims: &[Aim; RAYS], span: &Span) -> Together = walk_together);
+on_unit_through!(fn together(rays: &[Ray]) -> Option<Together> = walk_together, ANY);
 
-/// How many packets' rays are asked about one by one, after those of one have come apart, before it is tried again.
+/// How many packets' rays are asked about one by one at most, after those of several in a row have come apart, before
+/// it is tried again.
 const ALONE: usize = 7;
 
 impl<T: TriangleTest> WideBvh<T> {
@@ -97,37 +98,55 @@ impl<T: TriangleTest> WideBvh<T> {
     /// # Panics
     /// If there are not as many `hits` as `rays`.
     pub fn closest_coherent_on(&self, unit: Unit, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        assert_eq!(rays.len(), hits.len(), "a place for the hit of each ray");
-        let mut alone = 0usize;
-        for (rays, hits) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)) {
-            let together = if alone == 0 { self.packet(unit, rays, hits) } else { None };
-            let Some(stayed) = together else {
+        self.coherent::<_, false>(unit, rays, hits, |hit| hit, |ray| self.closest_on(unit, ray));
+    }
+
+    /// Whether there is any hit, of rays that go much the same way, by a vector unit of one's choice. Where they turn out
+    /// not to, they are asked about one by one, at little loss.
+    ///
+    /// # Panics
+    /// If there are not as many `occluded` as `rays`.
+    pub fn occluded_coherent_on(&self, unit: Unit, rays: &[Ray], occluded: &mut [bool]) {
+        self.coherent::<_, true>(
+            unit,
+            rays,
+            occluded,
+            |hit| hit.is_some(),
+            |ray| self.occluded_on(unit, ray),
+        );
+    }
+
+    /// Answers for rays in packets by the hits they have, or for `one` where packets do not pay.
+    fn coherent<A, const ANY: bool>(
+        &self,
+        unit: Unit,
+        rays: &[Ray],
+        answers: &mut [A],
+        answer: impl Fn(Option<Hit>) -> A,
+        one: impl Fn(&Ray) -> A,
+    ) {
+        assert_eq!(rays.len(), answers.len(), "a place for the answer to each ray");
+        // How many are to be asked about alone, and how many it will be after the next that comes apart.
+        let (mut alone, mut next) = (0usize, 1);
+        for (rays, answers) in rays.chunks(RAYS).zip(answers.chunks_mut(RAYS)) {
+            let packet = if alone == 0 { self.packet::<ANY>(unit, rays) } else { None };
+            let Some(Together { hits, stayed }) = packet else {
                 alone = alone.saturating_sub(1);
-                for (ray, hit) in rays.iter().zip(hits) {
-                    *hit = self.closest_on(unit, ray);
-                }
+                answers.iter_mut().zip(rays).for_each(|(own, ray)| *own = one(ray));
                 continue;
             };
-            alone = if stayed { 0 } else { ALONE };
+            answers.iter_mut().zip(hits).for_each(|(own, hit)| *own = answer(hit));
+            (alone, next) = if stayed { (0, 1) } else { (next, ALONE.min(2 * next + 1)) };
         }
     }
 
-    /// The nearest hits of a packet, and whether it stayed together. `None`, and no hits, if its rays do not go the same
-    /// way, or are too few.
-    fn packet(&self, unit: Unit, rays: &[Ray], hits: &mut [Option<Hit>]) -> Option<bool> {
+    /// What comes of a packet; `None` if its rays do not go the same way, or are too few.
+    fn packet<const ANY: bool>(&self, unit: Unit, rays: &[Ray]) -> Option<Together> {
         // What is left over at the end is not worth it.
         if rays.len() < RAYS / 2 {
             return None;
         }
-        let mut aims = [Aim::new(&rays[0], self.scale)?; RAYS];
-        for (aim, ray) in aims.iter_mut().zip(rays) {
-            *aim = Aim::new(ray, self.scale)?;
-        }
-        let found = together::<T, _>(unit, self, &mut Uncounted, &aims, &Span::of(&aims)?);
-        for ((hit, nearest), aim) in hits.iter_mut().zip(&found.nearest).zip(&aims) {
-            *hit = nearest.hit(aim);
-        }
-        Some(found.stayed)
+        together::<T, _, ANY>(unit, self, &mut Uncounted, rays)
     }
 
     #[inline]
@@ -154,6 +173,10 @@ impl<T: TriangleTest> Intersector for WideBvh<T> {
 
     fn closest_coherent(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
         self.closest_coherent_on(self.unit, rays, hits);
+    }
+
+    fn occluded_coherent(&self, rays: &[Ray], occluded: &mut [bool]) {
+        self.occluded_coherent_on(self.unit, rays, occluded);
     }
 }
 

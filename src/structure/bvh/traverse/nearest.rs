@@ -60,7 +60,7 @@ impl Nearest {
     }
 
     /// Takes for each of some rays what its lane found of one triangle, unless that lies before the ray's start. Tells
-    /// whether any is nearer than what was.
+    /// whether any is as near as what was, or nearer.
     ///
     /// # Safety
     /// The processor has the lanes' vector unit, and there are as many rays as lanes.
@@ -80,15 +80,15 @@ impl Nearest {
             found.v.store(&mut v, 0);
         }
         let mut left = lanes;
-        let mut is_nearer = false;
+        let mut is_taken = false;
         while left != 0 {
             let lane = left.trailing_zeros() as usize & 15;
             left &= left - 1;
             if t[lane] >= aims[lane].near {
-                is_nearer |= t[lane] < rays[lane].t;
+                is_taken |= t[lane] <= rays[lane].t;
                 rays[lane].offer(t[lane], u[lane], v[lane], item);
             }
         }
-        is_nearer
+        is_taken
     }
 }

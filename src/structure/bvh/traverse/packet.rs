@@ -14,8 +14,9 @@ use super::nearest::Nearest;
 use super::single::go_on;
 use super::waiting::{PLACES, Stack};
 use super::walk::{Walker, walk};
-use crate::geometry::hit::{Aim, Beam, Span, Spread, TriangleTest, meet, sides};
+use crate::geometry::hit::{Aim, Beam, Columns, Span, Spread, TriangleTest, meet, sides};
 use crate::geometry::lanes::Lanes;
+use crate::geometry::{Hit, Ray};
 use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 use std::ops::ControlFlow;
@@ -30,74 +31,83 @@ const MOST: usize = 64;
 
 /// What comes of a packet.
 pub(super) struct Together {
-    /// The nearest hit of each ray.
-    pub(super) nearest: [Nearest; RAYS],
+    /// The nearest hit of each ray, or with `ANY` one it has.
+    pub(super) hits: [Option<Hit>; RAYS],
     /// Whether they stayed together to the end.
     pub(super) stayed: bool,
 }
 
-/// Takes the rays through, all of which go together ([`Span::of`]): if they have little in common after all, each goes
-/// on by itself, from the nearest hit it has by then.
+/// Takes the rays through, not more than [`RAYS`]: each to its nearest hit, or with `ANY` until it has one. If they have
+/// little in common after all, those that are still under way go on by themselves, from what they have met by then.
+/// `None` if they do not go the same way ([`Span::of`]), or one goes nowhere.
 ///
 /// # Safety
 /// The processor has the vector units of the lanes for nodes `N` and for blocks `B`.
 #[inline(always)]
-pub(super) unsafe fn together<N: Lanes, B: Lanes, T: TriangleTest, C: Count>(
+pub(super) unsafe fn together<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
     bvh: &WideBvh<T>,
     count: &mut C,
-    aims: &[Aim; RAYS],
-    span: &Span,
-) -> Together {
-    // As many as it takes: the fewer lanes a vector has, the more beams there are.
-    let mut beams = [const { MaybeUninit::<Beam<N>>::uninit() }; RAYS];
-    for (beam, from) in beams.iter_mut().zip((0..RAYS).step_by(N::LEN)) {
-        // SAFETY: the processor is the caller's; the lanes are below 16.
-        beam.write(unsafe { Beam::several(aims, from) });
+    rays: &[Ray],
+) -> Option<Together> {
+    // As for one ray: here, where the unit's own instructions make them.
+    let mut aims = [const { MaybeUninit::<Aim>::uninit() }; RAYS];
+    for (at, aim) in aims.iter_mut().enumerate() {
+        // Where there are fewer, the first once more.
+        aim.write(Aim::new(rays.get(at).unwrap_or(&rays[0]), bvh.scale)?);
     }
+    // SAFETY: all were written.
+    let aims = unsafe { &*(&raw const aims).cast::<[Aim; RAYS]>() };
+    let span = &Span::of(aims)?;
     // SAFETY: the processor is the caller's.
     let mut several = unsafe {
-        Several::<N, B, T> {
+        Several::<N, B, T, ANY> {
             aims,
             span,
             wide: span.spread(),
             narrow: span.spread(),
-            beams,
+            columns: Columns::of(aims),
             nearest: aims.each_ref().map(Nearest::none),
             farthest: span.far,
+            under_way: (1 << RAYS) - 1,
             vectors: 0,
-            test: PhantomData,
+            types: PhantomData,
         }
     };
     let mut places = [const { MaybeUninit::uninit() }; PLACES];
     let mut stayed = bvh.waiting <= PLACES;
     if stayed {
         // SAFETY: the processor is the caller's, and the places are enough.
-        stayed = unsafe { walk::<N, T>(bvh, count, &mut several, Stack::of(&mut places)) }.is_continue();
+        let end = unsafe { walk::<N, T>(bvh, count, &mut several, Stack::of(&mut places)) };
+        stayed = end.is_continue() || several.under_way == 0;
     }
-    let mut nearest = several.nearest;
-    if !stayed {
-        for (nearest, aim) in nearest.iter_mut().zip(aims) {
+    let mut hits = [None; RAYS];
+    for (ray, (hit, aim)) in hits.iter_mut().zip(aims).enumerate() {
+        let mut nearest = several.nearest[ray];
+        if !stayed && several.under_way >> ray & 1 == 1 {
             // SAFETY: the processor is the caller's.
-            *nearest = unsafe { go_on::<N, B, T, C, false>(bvh, count, aim, *nearest) };
+            nearest = unsafe { go_on::<N, B, T, C, ANY>(bvh, count, aim, nearest) };
         }
+        *hit = nearest.hit(aim);
     }
-    Together { nearest, stayed }
+    Some(Together { hits, stayed })
 }
 
-struct Several<'a, N, B, T> {
+struct Several<'a, N, B, T, const ANY: bool> {
     aims: &'a [Aim; RAYS],
     span: &'a Span,
     wide: Spread<N>,
     narrow: Spread<B>,
-    beams: [MaybeUninit<Beam<N>>; RAYS],
+    columns: Columns,
     nearest: [Nearest; RAYS],
     farthest: f32,
+    /// Bit `i` is set while ray `i` looks for hits: with `ANY`, until it has one.
+    under_way: u64,
     /// Vectors of boxes and blocks tested.
     vectors: usize,
-    test: PhantomData<T>,
+    types: PhantomData<T>,
 }
 
-impl<N: Lanes, B: Lanes, T: TriangleTest> Walker<N> for Several<'_, N, B, T> {
+impl<N: Lanes, B: Lanes, T: TriangleTest, const ANY: bool> Walker<N> for Several<'_, N, B, T, ANY> {
     #[inline(always)]
     fn rows(&self) -> [usize; 3] {
         self.span.rows()
@@ -133,27 +143,39 @@ impl<N: Lanes, B: Lanes, T: TriangleTest> Walker<N> for Several<'_, N, B, T> {
                 met |= last.at_least(first) << from;
             }
         }
-        let mut is_nearer = false;
+        let mut is_taken = false;
         while met != 0 {
             let lane = met.trailing_zeros() as usize & (TRIANGLES - 1);
             met &= met - 1;
             let item = block.items[lane];
-            for (beam, from) in self.beams.iter().zip((0..RAYS).step_by(N::LEN)) {
-                // SAFETY: as many beams were written as there are steps; the processor is the caller's.
+            // As often as it takes: the fewer lanes a vector has, the more beams there are.
+            for from in (0..RAYS).step_by(N::LEN) {
+                let under_way = self.under_way >> from;
+                if ANY && under_way.trailing_zeros() as usize >= N::LEN {
+                    continue;
+                }
+                // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 16.
                 unsafe {
-                    let beam = beam.assume_init_ref();
-                    let Some(found) = meet::<N, T>(beam, &Alone { block, lane }) else { continue };
-                    let lanes = found.lanes & found.t.at_least(N::splat(0.0));
+                    let beam = Beam::several(&self.columns, from);
+                    let Some(found) = meet::<N, T>(&beam, &Alone { block, lane }) else { continue };
+                    let lanes = found.lanes & under_way & found.t.at_least(N::splat(0.0));
                     if lanes != 0 {
                         let (nearest, aims) = (&mut self.nearest[from..], &self.aims[from..]);
-                        is_nearer |= Nearest::take_each(nearest, aims, &found, lanes, item);
+                        is_taken |= Nearest::take_each(nearest, aims, &found, lanes, item);
                     }
                 }
             }
         }
-        if is_nearer {
-            self.farthest =
-                self.nearest.iter().fold(0.0, |most, ray| if ray.t > most { ray.t } else { most });
+        if is_taken {
+            let mut farthest = 0.0;
+            for (ray, nearest) in self.nearest.iter().enumerate() {
+                if ANY && nearest.is_hit() {
+                    self.under_way &= !(1 << ray);
+                } else if nearest.t > farthest {
+                    farthest = nearest.t;
+                }
+            }
+            self.farthest = farthest;
         }
         ControlFlow::Continue(())
     }

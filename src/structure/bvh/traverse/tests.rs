@@ -135,11 +135,14 @@ fn hold<T: TriangleTest>(triangles: &[[Vec3; 3]], binary: &BinaryBvh, rays: &[Ra
     for unit in Unit::all() {
         let mut together = vec![None; rays.len()];
         wide.closest_coherent_on(unit, rays, &mut together);
-        for ((ray, hit), packet) in rays.iter().zip(&expected).zip(together) {
+        let mut hidden = vec![false; rays.len()];
+        wide.occluded_coherent_on(unit, rays, &mut hidden);
+        for (((ray, hit), packet), hidden) in rays.iter().zip(&expected).zip(together).zip(hidden) {
             let told = wide.closest_on(unit, ray);
             assert_eq!(bits(told), bits(*hit), "{} {unit:?} {ray:?}: {told:?}, {hit:?}", T::NAME);
             assert_eq!(bits(packet), bits(*hit), "{} {unit:?} {ray:?} in a packet", T::NAME);
             assert_eq!(wide.occluded_on(unit, ray), hit.is_some(), "{} {unit:?} {ray:?}", T::NAME);
+            assert_eq!(hidden, hit.is_some(), "{} {unit:?} {ray:?} in a packet", T::NAME);
         }
     }
     expected.iter().flatten().count()
@@ -198,8 +201,13 @@ fn packets_tell_what_the_list_tells() {
                 let far = if random.below(5) == 0 { 1.0 } else { f32::INFINITY };
                 Ray { near: 0.1, far, ..Ray::new(origin, to + random.point() * apart - origin) }
             }));
+            // As shadow rays do: from places near one another to one light, there being the end.
+            rays.extend((0..16).map(|_| {
+                let origin = to + random.point() * apart;
+                Ray { far: 1.0, ..Ray::new(origin, from - origin) }
+            }));
         }
-        rays.truncate(16 * 39 + 11);
+        rays.truncate(16 * 79 + 11);
         assert!(hold_both(&triangles, &halved(&triangles, 2), &rays) > 50, "{apart}");
     }
 }
@@ -219,9 +227,15 @@ fn packets_that_come_apart_tell_what_the_list_tells() {
     assert!(hold_both(&triangles, &bvh, &rays) > 300);
     let wide = WideBvh::<Watertight>::new(&bvh, &triangles);
     for unit in Unit::all() {
-        let packets = rays.chunks(16).map(|rays| wide.packet(unit, rays, &mut [None; 16]));
-        let packets: Vec<Option<bool>> = packets.collect();
-        assert!(packets.contains(&Some(true)) && packets.contains(&Some(false)), "{unit:?} {packets:?}");
+        let stayed = |rays: &[Ray]| {
+            [wide.packet::<false>(unit, rays), wide.packet::<true>(unit, rays)]
+                .map(|packet| packet.map(|packet| packet.stayed))
+        };
+        let packets: Vec<_> = rays.chunks(16).map(stayed).collect();
+        for way in [0, 1] {
+            let there = |stayed| packets.iter().any(|packet| packet[way] == Some(stayed));
+            assert!(there(true) && there(false), "{unit:?} {packets:?}");
+        }
     }
 }
 

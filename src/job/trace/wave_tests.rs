@@ -1,13 +1,13 @@
 //! Waves are held against rays followed one by one.
 
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 
-use super::tests::{bits, scene};
+use super::tests::scene;
 use super::*;
 use crate::geometry::hit::Cone;
-use crate::geometry::{Camera, Hit, Ray, Sphere};
+use crate::geometry::{Camera, Sphere};
 use crate::machine::Threads;
-use crate::scene::{Material, Mesh, PointLight, Primitive, Scene, Shape, SplitMix64};
+use crate::scene::{Material, PointLight, Primitive, Scene, Shape, SplitMix64};
 use crate::scheme::tiles::share;
 use crate::structure::bvh::Intersector;
 use crate::structure::bvh::build::{Builder, Settings};

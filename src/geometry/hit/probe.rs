@@ -3,9 +3,10 @@
 
 use super::Scale;
 use super::aim::{LEAST_PART, rows, spread};
+use super::span::{APART, Seek, Slab, Span};
 use crate::geometry::FineRay;
 use crate::geometry::lanes::Lanes;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec3A};
 
 /// By how much distances are rounded outwards: twice what the box test of triangles takes, so that a box around their
 /// boxes is never passed over for its own rounding.
@@ -23,6 +24,8 @@ pub(crate) struct Probe {
     last_origin: Vec3,
     first_rate: Vec3,
     last_rate: Vec3,
+    /// Its greatest part is 1.
+    direction: Vec3,
     near: f32,
     /// By axis, whether it goes up.
     rises: [bool; 3],
@@ -62,6 +65,7 @@ impl Probe {
             last_origin: pick(low, high),
             first_rate: (rate * (1.0 - SLACK)).as_vec3(),
             last_rate: (rate * (1.0 + SLACK)).as_vec3(),
+            direction: direction.as_vec3(),
             near: ((near - start) * lengths * (1.0 - SLACK)) as f32,
             rises,
             lengths,
@@ -76,18 +80,48 @@ impl Probe {
         (((f64::from(t) - self.start) * self.lengths * (1.0 + BEYOND)) as f32).min(f32::MAX)
     }
 
-    /// As [`super::Beam::rows`].
+    /// What some of these span; none if they do not go much the same way.
     #[inline]
-    pub(crate) fn rows(&self) -> [usize; 3] {
+    pub(crate) fn span(probes: &[Self]) -> Option<Span> {
+        let first = probes.first()?;
+        let like_first = |probe: &Self| {
+            probe.rises == first.rises
+                && (probe.direction - first.direction).abs().max_element() <= APART
+                && probe.last_rate.is_finite()
+        };
+        if !probes.iter().all(like_first) {
+            return None;
+        }
+        let over = |part: fn(&Self) -> Vec3| {
+            let part = |probe| Vec3A::from(part(probe));
+            probes.iter().fold([part(first); 2], |[least, greatest], probe| {
+                [least.min(part(probe)), greatest.max(part(probe))]
+            })
+        };
+        let pick = |up: Vec3A, down: Vec3A| Vec3A::select(first.rises.into(), up, down);
+        let [first_origins, last_origins] = [over(|of| of.first_origin), over(|of| of.last_origin)];
+        Some(Span {
+            first_origin: pick(first_origins[1], first_origins[0]),
+            last_origin: pick(last_origins[0], last_origins[1]),
+            first_rate: over(|of| of.first_rate),
+            last_rate: over(|of| of.last_rate),
+            near: probes.iter().fold(f32::INFINITY, |least, of| least.min(of.near)),
+            far: f32::MAX,
+            rises: first.rises,
+        })
+    }
+}
+
+impl Seek for Probe {
+    type In<L: Lanes> = Feeler<L>;
+
+    #[inline]
+    fn rows(&self) -> [usize; 3] {
         rows(self.rises)
     }
 
-    /// The same in lanes.
-    ///
-    /// # Safety
-    /// The processor has the lanes' vector unit.
     #[inline(always)]
-    pub(crate) unsafe fn spread<L: Lanes>(&self) -> Feeler<L> {
+    unsafe fn spread<L: Lanes>(&self) -> Feeler<L> {
         // SAFETY: the processor is the caller's.
         unsafe {
             Feeler {
@@ -111,14 +145,9 @@ pub(crate) struct Feeler<L> {
     near: L,
 }
 
-impl<L: Lanes> Feeler<L> {
-    /// From where to where the ray may be between the planes of boxes, as [`super::slab`]: those it comes to `first` and
-    /// `last`, by axis. The first exceeds the second if nowhere.
-    ///
-    /// # Safety
-    /// The processor has the lanes' vector unit.
+impl<L: Lanes> Slab<L> for Feeler<L> {
     #[inline(always)]
-    pub(crate) unsafe fn slab(&self, reach: L, first: [L; 3], last: [L; 3]) -> [L; 2] {
+    unsafe fn slab(&self, reach: L, first: [L; 3], last: [L; 3]) -> [L; 2] {
         // SAFETY: the processor is the caller's.
         unsafe {
             // A NaN among the first arguments is passed over.
@@ -128,7 +157,9 @@ impl<L: Lanes> Feeler<L> {
             [enters, leaves]
         }
     }
+}
 
+impl<L: Lanes> Feeler<L> {
     #[inline(always)]
     unsafe fn enters(&self, planes: [L; 3], axis: usize) -> L {
         // SAFETY: the processor is the caller's.

@@ -5,17 +5,17 @@ use crate::geometry::lanes::Lanes;
 use glam::Vec3A;
 
 /// How far apart directions may be that go much the same way, as shares of their greatest part.
-const APART: f32 = 0.125;
+pub(super) const APART: f32 = 0.125;
 
 /// The intervals that the parts of some rays span: of one octant, none parallel to a plane of an axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Span {
     /// The origins that make planes seem nearest where they are come to first, and farthest where last.
-    first_origin: Vec3A,
-    last_origin: Vec3A,
+    pub(super) first_origin: Vec3A,
+    pub(super) last_origin: Vec3A,
     /// Least and greatest.
-    first_rate: [Vec3A; 2],
-    last_rate: [Vec3A; 2],
+    pub(super) first_rate: [Vec3A; 2],
+    pub(super) last_rate: [Vec3A; 2],
     /// The nearest start of a ray.
     pub(crate) near: f32,
     /// The farthest end of a ray.
@@ -59,18 +59,43 @@ impl Span {
             rises,
         })
     }
+}
+
+/// What seeks boxes: one ray or several that go together, made ready.
+pub(crate) trait Seek {
+    /// The same in lanes.
+    type In<L: Lanes>: Slab<L>;
 
     /// As [`super::Beam::rows`].
-    pub(crate) fn rows(&self) -> [usize; 3] {
-        rows(self.rises)
-    }
+    fn rows(&self) -> [usize; 3];
 
     /// The same in lanes.
     ///
     /// # Safety
     /// The processor has the lanes' vector unit.
+    unsafe fn spread<L: Lanes>(&self) -> Self::In<L>;
+}
+
+/// The box test of what seeks.
+pub(crate) trait Slab<L: Lanes> {
+    /// From where to where a ray of it may be between the planes of boxes, those come to `first` and `last`, by axis: no
+    /// later and no earlier than [`super::slab`] tells of each. The first exceeds the second if nowhere.
+    ///
+    /// # Safety
+    /// The processor has the lanes' vector unit.
+    unsafe fn slab(&self, far: L, first: [L; 3], last: [L; 3]) -> [L; 2];
+}
+
+impl Seek for Span {
+    type In<L: Lanes> = Spread<L>;
+
     #[inline(always)]
-    pub(crate) unsafe fn spread<L: Lanes>(&self) -> Spread<L> {
+    fn rows(&self) -> [usize; 3] {
+        rows(self.rises)
+    }
+
+    #[inline(always)]
+    unsafe fn spread<L: Lanes>(&self) -> Spread<L> {
         // SAFETY: the processor is the caller's.
         unsafe {
             Spread {
@@ -94,13 +119,9 @@ pub(crate) struct Spread<L> {
     near: L,
 }
 
-impl<L: Lanes> Spread<L> {
-    /// From where to where some ray may be between planes: no later and no earlier than [`super::slab`] tells of each.
-    ///
-    /// # Safety
-    /// The processor has the lanes' vector unit.
+impl<L: Lanes> Slab<L> for Spread<L> {
     #[inline(always)]
-    pub(crate) unsafe fn slab(&self, far: L, first: [L; 3], last: [L; 3]) -> [L; 2] {
+    unsafe fn slab(&self, far: L, first: [L; 3], last: [L; 3]) -> [L; 2] {
         // SAFETY: the processor is the caller's.
         unsafe {
             let enters =
@@ -109,7 +130,9 @@ impl<L: Lanes> Spread<L> {
             [enters, leaves]
         }
     }
+}
 
+impl<L: Lanes> Spread<L> {
     #[inline(always)]
     unsafe fn enters(&self, planes: [L; 3], axis: usize) -> L {
         // SAFETY: the processor is the caller's.

@@ -13,9 +13,11 @@
 //! the distances there are, times the place's skew, and the top takes every ray to be as wide as that. A mesh whose
 //! place has no way back, or a skew above [`MOST_SKEW`], is held in the world's space as one more mesh.
 
+mod together;
+
 use super::build::{BuildError, Builder, Input};
 use super::place::placed_box;
-use super::traverse::{Count, Uncounted};
+use super::traverse::{Count, Uncounted, in_packets};
 use super::{BinaryBvh, BoxBvh, Intersector, Place, RayCounts, WideBvh};
 use crate::geometry::hit::{TriangleTest, Watertight};
 use crate::geometry::{Aabb, FineRay, Hit, Ray};
@@ -259,6 +261,15 @@ impl<T: TriangleTest> Intersector for Instances<T> {
             if met { f32::NEG_INFINITY } else { far }
         });
         met
+    }
+
+    fn closest_coherent(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        in_packets(rays, hits, |rays, hits| self.closest_together(rays, hits), |ray| self.closest(ray));
+    }
+
+    fn occluded_coherent(&self, rays: &[Ray], occluded: &mut [bool]) {
+        let packet = |rays: &[Ray], occluded: &mut [bool]| self.occluded_together(rays, occluded);
+        in_packets(rays, occluded, packet, |ray| self.occluded(ray));
     }
 }
 

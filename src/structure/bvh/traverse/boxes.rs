@@ -3,11 +3,13 @@
 use super::super::BoxBvh;
 use super::super::wide::WIDTH;
 use super::count::{Count, Uncounted};
+use super::packet::RAYS;
 use super::waiting::{PLACES, Stack};
 use crate::geometry::FineRay;
-use crate::geometry::hit::Probe;
+use crate::geometry::hit::{Probe, Seek, Slab};
 use crate::geometry::lanes::{Kind, Lanes};
 use std::mem::MaybeUninit;
+use std::slice;
 
 impl BoxBvh {
     /// Goes through the items in whose boxes a ray may end, nearer ones first. `item` is told an item's place in the
@@ -39,27 +41,57 @@ impl BoxBvh {
             (far >= ray.near).then(|| probe.reach(far))
         });
     }
+
+    /// Goes with several rays, not more than [`RAYS`], through the items in whose boxes one of them may end, nearer ones
+    /// first; `error` as for one. `item` is told an item's place in the order, and shortens in `fars` how far each ray
+    /// still reaches, below its `near` if it is over; it answers whether to go on. Tells whether the rays go the same
+    /// way: if not, nothing is asked.
+    pub(in crate::structure::bvh) fn walk_together(
+        &self,
+        rays: &[FineRay],
+        fars: &mut [f32],
+        error: f64,
+        mut item: impl FnMut(usize, &mut [f32]) -> bool,
+    ) -> bool {
+        let mut probes = [const { MaybeUninit::<Probe>::uninit() }; RAYS];
+        for (probe, ray) in probes.iter_mut().zip(rays) {
+            let Some(made) = Probe::new(ray, self.scale, error) else { return false };
+            probe.write(made);
+        }
+        // SAFETY: as many were written as there are rays, or places.
+        let probes = unsafe { slice::from_raw_parts(probes.as_ptr().cast::<Probe>(), rays.len().min(RAYS)) };
+        let Some(span) = Probe::span(probes) else { return false };
+        let reach = |fars: &[f32]| {
+            let under_way = probes.iter().zip(rays).zip(fars).filter(|((_, ray), far)| **far >= ray.near);
+            under_way.map(|((probe, _), far)| probe.reach(*far)).reduce(f32::max)
+        };
+        if let Some(farthest) = reach(fars) {
+            let mut item = |place| if item(place, fars) { reach(fars) } else { None };
+            on_unit(self, &span, farthest, &mut Uncounted, &mut item);
+        }
+        true
+    }
 }
 
 #[inline]
-fn on_unit<C: Count>(
+fn on_unit<S: Seek, C: Count>(
     bvh: &BoxBvh,
-    probe: &Probe,
+    probe: &S,
     reach: f32,
     count: &mut C,
     item: impl FnMut(usize) -> Option<f32>,
 ) {
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,bmi1,bmi2,popcnt,lzcnt")]
-    fn avx2<C: Count>(
+    fn avx2<S: Seek, C: Count>(
         bvh: &BoxBvh,
-        probe: &Probe,
+        probe: &S,
         reach: f32,
         count: &mut C,
         item: impl FnMut(usize) -> Option<f32>,
     ) {
         // SAFETY: this function has the feature.
-        unsafe { through::<crate::geometry::lanes::x86::Lanes8, C>(bvh, probe, reach, count, item) }
+        unsafe { through::<crate::geometry::lanes::x86::Lanes8, S, C>(bvh, probe, reach, count, item) }
     }
     match bvh.unit.0 {
         // SAFETY: a `Unit` is only made where it is there, this one where the bit instructions are too.
@@ -68,24 +100,24 @@ fn on_unit<C: Count>(
         // SAFETY: every x86-64 processor has the unit.
         #[cfg(target_arch = "x86_64")]
         Kind::Sse2 => unsafe {
-            through::<crate::geometry::lanes::x86::Lanes4, C>(bvh, probe, reach, count, item)
+            through::<crate::geometry::lanes::x86::Lanes4, S, C>(bvh, probe, reach, count, item)
         },
         // SAFETY: every 64-bit ARM processor with an operating system has the unit.
         #[cfg(target_arch = "aarch64")]
         Kind::Neon => unsafe {
-            through::<crate::geometry::lanes::arm::Lanes4, C>(bvh, probe, reach, count, item)
+            through::<crate::geometry::lanes::arm::Lanes4, S, C>(bvh, probe, reach, count, item)
         },
         // SAFETY: one lane needs no unit.
-        Kind::Scalar => unsafe { through::<f32, C>(bvh, probe, reach, count, item) },
+        Kind::Scalar => unsafe { through::<f32, S, C>(bvh, probe, reach, count, item) },
     }
 }
 
 /// # Safety
 /// The processor has the lanes' vector unit.
 #[inline(always)]
-unsafe fn through<L: Lanes, C: Count>(
+unsafe fn through<L: Lanes, S: Seek, C: Count>(
     bvh: &BoxBvh,
-    probe: &Probe,
+    probe: &S,
     reach: f32,
     count: &mut C,
     item: impl FnMut(usize) -> Option<f32>,
@@ -93,18 +125,18 @@ unsafe fn through<L: Lanes, C: Count>(
     let mut places = [const { MaybeUninit::uninit() }; PLACES];
     if bvh.waiting <= PLACES {
         // SAFETY: the processor is the caller's.
-        return unsafe { walk::<L, C>(bvh, probe, reach, count, Stack::of(&mut places), item) };
+        return unsafe { walk::<L, S, C>(bvh, probe, reach, count, Stack::of(&mut places), item) };
     }
     let mut many = vec![MaybeUninit::uninit(); bvh.waiting];
     // SAFETY: as above.
-    unsafe { walk::<L, C>(bvh, probe, reach, count, Stack::of(&mut many), item) }
+    unsafe { walk::<L, S, C>(bvh, probe, reach, count, Stack::of(&mut many), item) }
 }
 
 /// The walk itself: each item answers how far boxes may begin from then on, or that it is over. In addition: `stack` has as many places as may wait.
 #[inline(always)]
-unsafe fn walk<L: Lanes, C: Count>(
+unsafe fn walk<L: Lanes, S: Seek, C: Count>(
     bvh: &BoxBvh,
-    probe: &Probe,
+    probe: &S,
     mut reach: f32,
     count: &mut C,
     mut stack: Stack<'_>,

@@ -15,7 +15,8 @@ mod walk;
 pub use count::RayCounts;
 pub(super) use count::{Count, Uncounted};
 pub use list::TriangleList;
-use packet::{RAYS, Together, together as walk_together};
+pub(super) use packet::RAYS;
+use packet::{Together, together as walk_together};
 use single::through as walk_single;
 
 use super::{Intersector, WideBvh};
@@ -69,6 +70,29 @@ on_unit_through!(fn together(rays: &[Ray]) -> Option<Together> = walk_together, 
 /// it is tried again.
 const ALONE: usize = 7;
 
+/// Answers for rays packet by packet, or for `one` where that does not pay. A packet tells whether it stayed together to
+/// the end; or none, and no answers, if its rays do not go the same way.
+pub(super) fn in_packets<A>(
+    rays: &[Ray],
+    answers: &mut [A],
+    mut packet: impl FnMut(&[Ray], &mut [A]) -> Option<bool>,
+    one: impl Fn(&Ray) -> A,
+) {
+    assert_eq!(rays.len(), answers.len(), "a place for the answer to each ray");
+    // How many are to be asked about alone, and how many it will be after the next that comes apart.
+    let (mut alone, mut next) = (0usize, 1);
+    for (rays, answers) in rays.chunks(RAYS).zip(answers.chunks_mut(RAYS)) {
+        // What is left over at the end is not worth it.
+        let is_tried = alone == 0 && rays.len() >= RAYS / 2;
+        let Some(stayed) = (if is_tried { packet(rays, answers) } else { None }) else {
+            alone = alone.saturating_sub(1);
+            answers.iter_mut().zip(rays).for_each(|(own, ray)| *own = one(ray));
+            continue;
+        };
+        (alone, next) = if stayed { (0, 1) } else { (next, ALONE.min(2 * next + 1)) };
+    }
+}
+
 impl<T: TriangleTest> WideBvh<T> {
     /// The nearest hit, by a vector unit of one's choice.
     #[inline]
@@ -116,7 +140,7 @@ impl<T: TriangleTest> WideBvh<T> {
         );
     }
 
-    /// Answers for rays in packets by the hits they have, or for `one` where packets do not pay.
+    /// Answers for rays by the hits they have in packets, or for `one`.
     fn coherent<A, const ANY: bool>(
         &self,
         unit: Unit,
@@ -125,27 +149,16 @@ impl<T: TriangleTest> WideBvh<T> {
         answer: impl Fn(Option<Hit>) -> A,
         one: impl Fn(&Ray) -> A,
     ) {
-        assert_eq!(rays.len(), answers.len(), "a place for the answer to each ray");
-        // How many are to be asked about alone, and how many it will be after the next that comes apart.
-        let (mut alone, mut next) = (0usize, 1);
-        for (rays, answers) in rays.chunks(RAYS).zip(answers.chunks_mut(RAYS)) {
-            let packet = if alone == 0 { self.packet::<ANY>(unit, rays) } else { None };
-            let Some(Together { hits, stayed }) = packet else {
-                alone = alone.saturating_sub(1);
-                answers.iter_mut().zip(rays).for_each(|(own, ray)| *own = one(ray));
-                continue;
-            };
+        let packet = |rays: &[Ray], answers: &mut [A]| {
+            let Together { hits, stayed } = self.packet::<ANY>(unit, rays)?;
             answers.iter_mut().zip(hits).for_each(|(own, hit)| *own = answer(hit));
-            (alone, next) = if stayed { (0, 1) } else { (next, ALONE.min(2 * next + 1)) };
-        }
+            Some(stayed)
+        };
+        in_packets(rays, answers, packet, one);
     }
 
-    /// What comes of a packet; `None` if its rays do not go the same way, or are too few.
+    /// What comes of a packet; `None` if its rays do not go the same way.
     fn packet<const ANY: bool>(&self, unit: Unit, rays: &[Ray]) -> Option<Together> {
-        // What is left over at the end is not worth it.
-        if rays.len() < RAYS / 2 {
-            return None;
-        }
         together::<T, _, ANY>(unit, self, &mut Uncounted, rays)
     }
 

@@ -14,7 +14,7 @@ use super::nearest::Nearest;
 use super::single::go_on;
 use super::waiting::{PLACES, Stack};
 use super::walk::{Walker, walk};
-use crate::geometry::hit::{Aim, Beam, Columns, Span, Spread, TriangleTest, meet, sides};
+use crate::geometry::hit::{Aim, Beam, Columns, Seek, Slab, Span, Spread, TriangleTest, meet, sides};
 use crate::geometry::lanes::Lanes;
 use crate::geometry::{Hit, Ray};
 use std::marker::PhantomData;
@@ -22,7 +22,7 @@ use std::mem::MaybeUninit;
 use std::ops::ControlFlow;
 
 /// Rays a packet.
-pub(super) const RAYS: usize = 16;
+pub(in crate::structure::bvh) const RAYS: usize = 16;
 
 /// How many nodes and blocks a packet may test before its rays go on by themselves. Where triangles are so fine that no
 /// two rays meet the same, 16 take some hundred and seventy of both by themselves; those worth keeping together take

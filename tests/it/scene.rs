@@ -131,6 +131,15 @@ fn generated_scenes_never_change() {
         ("bart-kitchen-8", 0xfccf22cd6faa26ba),
         ("bart-kitchen-9", 0xfccf22cd6faa26ba),
         ("bart-kitchen-10", 0xfccf22cd6faa26ba),
+        ("bart-stress-1", 0x5489160179028f28),
+        ("bart-stress-2", 0x9e3b895c0911bbeb),
+        ("bart-stress-3", 0x70fa7057687a3f76),
+        ("bart-stress-4", 0xddc582c9f237e614),
+        ("bart-stress-5", 0xfef05f0e6e04268e),
+        ("bart-stress-5-small", 0xafafe2c40e5ed052),
+        ("bart-stress-6", 0xfab32ac7274c56a1),
+        ("bart-stress-7", 0x5b604c881b26cd39),
+        ("bart-stress-8", 0x7cff68ee332bcad6),
     ];
     assert_eq!(prints, expected);
 }

@@ -10,7 +10,8 @@
 //! Of a surface with `fresnel` the mirrored share is `R0 + (1 - R0)(1 - cos)^5` (Schlick 1994), and the rest of the
 //! light is scattered or let through. Whatever is not let through casts a full shadow; so does glass.
 //!
-//! [`super::waves`] follows the rays. Only arithmetic and square roots, which are the same everywhere; no function of a system's library.
+//! [`super::waves`] follows the rays. Only arithmetic and square roots, which are the same everywhere; no function of a
+//! system's library.
 
 use glam::Vec3;
 

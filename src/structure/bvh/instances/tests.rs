@@ -1,11 +1,12 @@
 use super::super::TriangleList;
 use super::super::build::Settings;
-use super::super::traverse::RAYS;
 use super::*;
 use crate::geometry::hit::Fast;
 use crate::geometry::oracle::Crossing;
 use crate::scene::SplitMix64;
 use glam::{DVec3, Mat3A, Vec3A};
+
+mod narrow;
 
 fn builder() -> Builder {
     Builder::new("binned_sah", &Settings::default()).unwrap()
@@ -166,48 +167,6 @@ fn the_top_loses_no_hit_however_meshes_stand() {
     assert_eq!(instances.hierarchies(), 2 + 4, "what has a way back shares its mesh's");
     let aimed = rays(&mut random, &in_world(&meshes, &places).0, 3.0, 5000);
     assert!(hold(&instances, &aimed) > 1000);
-}
-
-/// Narrow packets towards corners of triangles, and as many from near those to one light, there being the end.
-#[test]
-fn rays_that_go_together_are_told_what_each_is_told_alone() {
-    let mut random = SplitMix64::new(8);
-    let meshes = [soup(&mut random, 60), soup(&mut random, 9)];
-    for (what, way) in ways() {
-        let reach = meshes[0].bounds.transformed(&way).size().max_element().max(1e-6);
-        let stand: Vec<_> = (0..30)
-            .map(|number| (number % 2, Affine3A::from_translation(point(&mut random) * reach) * way))
-            .collect();
-        let places = placements(&meshes, &stand);
-        let (coarse, _) = in_world(&meshes, &places);
-        let size = Aabb::of_points(coarse.iter().flatten().copied()).size().max_element();
-        let mut aimed = Vec::new();
-        for packet in 0..60 {
-            let [aim, ..] = coarse[random.below(coarse.len())];
-            let from = aim + point(&mut random) * size;
-            let apart = size * if packet % 3 == 0 { 1e-2 } else { 1e-4 };
-            for _ in 0..RAYS {
-                let at = aim + point(&mut random) * apart;
-                aimed.push(match packet % 2 {
-                    0 => Ray::new(from, at - from),
-                    _ => Ray { far: 1.0, ..Ray::new(at, from - at) },
-                });
-            }
-        }
-        let instances = Instances::<Watertight>::new(&meshes, &places, &mut builder()).unwrap();
-        let hit = hold(&instances, &aimed);
-        let stayed = aimed.chunks(RAYS).filter(|rays| {
-            let both = [
-                instances.closest_together(rays, &mut [None; RAYS]),
-                instances.occluded_together(rays, &mut [false; RAYS]),
-            ];
-            both == [Some(true); 2]
-        });
-        let stayed = stayed.count();
-        assert!(stayed > 20, "{what}: {stayed} of 60 packets stayed together");
-        let has_area = !["a line", "nothing"].contains(&what);
-        assert!(!has_area || hit > 100, "{what}: {hit} rays hit");
-    }
 }
 
 /// What is told is a crossing in f64, and nothing that is surely met lies before it: to a bound that grows with the

@@ -203,8 +203,8 @@ fn tell_loose(percent: f64, loose: &[String]) {
     }
 }
 
-/// Opens one cell for each scene, machine, scheme and choice of settings: a scene that cannot be read or a setting that is off must not leave a
-/// folder behind that `--resume` would take up.
+/// Opens one cell for each scene, machine, scheme and choice of settings: a scene that cannot be read or a setting that is
+/// off must not leave a folder behind that `--resume` would take up.
 fn open_each_kind(plan: &Plan, cache: &mut SubjectCache) -> Result<(), MeasureError> {
     let mut seen = HashSet::new();
     for cell in &plan.cells {

@@ -41,8 +41,8 @@ mod refit_only;
 use super::{SettingError, Settings};
 use std::collections::BTreeMap;
 
-/// A structure over things that move. Between two frames they do; then a scheme has it rebuilt or refitted, and from then on it
-/// answers for them as they are.
+/// A structure over things that move. Between two frames they do; then a scheme has it rebuilt or refitted, and from then
+/// on it answers for them as they are.
 pub trait Kept {
     /// Why it cannot be.
     type Error;

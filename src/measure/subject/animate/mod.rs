@@ -3,10 +3,11 @@
 //! Settings: `job.size`, `job.tile`, `job.depth`, `job.builder`, `job.triangle` as of the job `trace`; `job.levels`
 //! (`two`, `one`); `job.upkeep`, one of [`frames::SCHEMES`](crate::scheme::frames::SCHEMES), with `job.percent`;
 //! `job.mode` (`interactive`, `predetermined`: schemes that look ahead may; P3-07); `job.approximation`, one of
-//! [`APPROXIMATIONS`](crate::job::animate::APPROXIMATIONS), `NAME` or `NAME:KNOB`; `job.lights`, how many of the scene's lights are lit (all). The frames of a
-//! cell are spread evenly over the scene's animation, first and last included; with `job.frames` it has so many, of
-//! which the cell takes those in the middle: the more there are, the more has one in common with the next. With `job.split`
-//! (`no`, `yes`) cells on real threads go through the frames once more, on one processor, to tell what their time goes into.
+//! [`APPROXIMATIONS`](crate::job::animate::APPROXIMATIONS), `NAME` or `NAME:KNOB`; `job.lights`, how many of the scene's
+//! lights are lit (all). The frames of a cell are spread evenly over the scene's animation, first and last included; with
+//! `job.frames` it has so many, of which the cell takes those in the middle: the more there are, the more has one in
+//! common with the next. With `job.split` (`no`, `yes`) cells on real threads go through the frames once more, on one
+//! processor, to tell what their time goes into.
 //!
 //! Every frame is held against the exact one that one processor makes: without an approximation it must be the same
 //! picture bit for bit; with one, it is told how far it is from it. On a simulated machine what one processor does

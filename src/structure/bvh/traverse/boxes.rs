@@ -132,7 +132,8 @@ unsafe fn through<L: Lanes, S: Seek, C: Count>(
     unsafe { walk::<L, S, C>(bvh, probe, reach, count, Stack::of(&mut many), item) }
 }
 
-/// The walk itself: each item answers how far boxes may begin from then on, or that it is over. In addition: `stack` has as many places as may wait.
+/// The walk itself: each item answers how far boxes may begin from then on, or that it is over. In addition: `stack` has
+/// as many places as may wait.
 #[inline(always)]
 unsafe fn walk<L: Lanes, S: Seek, C: Count>(
     bvh: &BoxBvh,

@@ -9,8 +9,9 @@ use super::{Instances, Intersector};
 use crate::geometry::hit::TriangleTest;
 use crate::geometry::{FineRay, Hit, Ray};
 
-/// Into how many places a packet may go before its rays go on by themselves.
-const MOST: usize = 64;
+/// Into how many places a packet may go before its rays go on by themselves: all of them go into each, where one by one
+/// few would.
+const MOST: usize = 4;
 
 /// No ray.
 const NONE: Ray = Ray { origin: glam::Vec3::ZERO, direction: glam::Vec3::ZERO, near: 0.0, far: 0.0 };
@@ -33,7 +34,11 @@ impl<T: TriangleTest> Instances<T> {
             }
         })?;
         if !stayed {
-            hits.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.closest(ray));
+            for (hit, ray) in hits.iter_mut().zip(rays) {
+                // What it has by now is found again, or something nearer.
+                let far = hit.map_or(ray.far, |hit| hit.t);
+                *hit = self.closest(&Ray { far, ..*ray });
+            }
         }
         Some(stayed)
     }

@@ -3,7 +3,7 @@
 //!
 //! An intersector around the real one reads the clock before each question about rays and after it, so that this is a
 //! pass of its own: it is slower than a frame that nobody times. How often the clock was read is told, and nothing is
-//! subtracted. Rays from the eye are asked about by up to 128 at once, all others one by one.
+//! subtracted: rays are asked about by up to 128 at once, so that is not often.
 
 use std::sync::atomic::Ordering;
 
@@ -64,6 +64,10 @@ impl<M: Machine> Intersector for Timed<'_, M> {
 
     fn closest_coherent(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
         self.timed(|| self.inner.closest_coherent(rays, hits));
+    }
+
+    fn occluded_coherent(&self, rays: &[Ray], occluded: &mut [bool]) {
+        self.timed(|| self.inner.occluded_coherent(rays, occluded));
     }
 }
 

@@ -172,7 +172,7 @@ fn what_a_frames_time_goes_into_changes_no_picture() {
         for (time, expected) in TIMES.iter().zip(&expected) {
             let (picture, split) = animator.split(*time, &machine, &mut film).unwrap();
             assert!(picture == *expected, "{method} at {time}");
-            // Rays from the eye are asked about 128 at once and all others one by one, the clock read twice a question.
+            // Twice a question, which is of up to 128 rays.
             let asked = u64::from(width * height).div_ceil(128);
             assert!(split.readings % 2 == 0 && split.readings > 2 * asked / 16, "{split:?}");
             assert!(

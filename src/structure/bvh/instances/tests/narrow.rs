@@ -10,8 +10,8 @@ fn rays_that_go_together_are_told_what_each_is_told_alone() {
     let meshes = [soup(&mut random, 60), soup(&mut random, 9)];
     for (what, way) in ways() {
         let reach = meshes[0].bounds.transformed(&way).size().max_element().max(1e-6);
-        let stand: Vec<_> = (0..30)
-            .map(|number| (number % 2, Affine3A::from_translation(point(&mut random) * reach) * way))
+        let stand: Vec<_> = (0..12)
+            .map(|number| (number % 2, Affine3A::from_translation(point(&mut random) * (4.0 * reach)) * way))
             .collect();
         let places = placements(&meshes, &stand);
         let (coarse, _) = in_world(&meshes, &places);
@@ -39,8 +39,9 @@ fn rays_that_go_together_are_told_what_each_is_told_alone() {
             both == [Some(true); 2]
         });
         let stayed = stayed.count();
-        assert!(stayed > 20, "{what}: {stayed} of 60 packets stayed together");
+        // Where meshes are lines or points, all of them lie within a ray's width of another.
         let has_area = !["a line", "nothing"].contains(&what);
+        assert!(!has_area || stayed > 20, "{what}: {stayed} of 60 packets stayed together");
         assert!(!has_area || hit > 100, "{what}: {hit} rays hit");
     }
 }

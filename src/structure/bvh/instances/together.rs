@@ -35,9 +35,9 @@ impl<T: TriangleTest> Instances<T> {
         })?;
         if !stayed {
             for (hit, ray) in hits.iter_mut().zip(rays) {
-                // What it has by now is found again, or something nearer.
+                // Nothing further than what it has by now is looked for.
                 let far = hit.map_or(ray.far, |hit| hit.t);
-                *hit = self.closest(&Ray { far, ..*ray });
+                *hit = self.closest(&Ray { far, ..*ray }).or(*hit);
             }
         }
         Some(stayed)

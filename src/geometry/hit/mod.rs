@@ -29,7 +29,7 @@ pub use watertight::Watertight;
 pub(crate) use aim::{Aim, Beam, Columns};
 pub(crate) use probe::Probe;
 pub(crate) use slab::slab;
-pub(crate) use span::{Seek, Slab, Span, Spread};
+pub(crate) use span::{Seek, Slab, Span, Spread, Way};
 
 use super::lanes::Lanes;
 

@@ -1,6 +1,7 @@
 //! What rays that go much the same way have in common.
 
 use super::aim::{Aim, rises, rows, spread};
+use crate::geometry::Ray;
 use crate::geometry::lanes::Lanes;
 use glam::Vec3A;
 
@@ -58,6 +59,29 @@ impl Span {
             far: aims.iter().fold(0.0, |greatest, aim| aim.far.max(greatest)),
             rises,
         })
+    }
+}
+
+/// Which way a ray goes, to be held against others' before they are made ready.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Way {
+    /// Its greatest part is 1.
+    direction: Vec3A,
+    octant: u32,
+}
+
+impl Way {
+    /// That of a ray.
+    #[inline]
+    pub(crate) fn of(ray: &Ray) -> Self {
+        let own = Vec3A::from(ray.direction);
+        Self { direction: own / own.abs().max_element(), octant: own.is_negative_bitmask() }
+    }
+
+    /// Whether rays of equal length that go this way and that one, go much the same; not if one goes nowhere.
+    #[inline]
+    pub(crate) fn is_like(self, other: Self) -> bool {
+        self.octant == other.octant && (self.direction - other.direction).abs().max_element() <= APART
     }
 }
 

@@ -52,6 +52,10 @@ pub struct World {
     runs: Vec<Placement>,
     /// The first triangle of each run: what is searched, close together.
     firsts: Vec<u32>,
+    /// Of which run the first of so many triangles is, of the next as many, and so on; and the last run.
+    marks: Vec<u32>,
+    /// How many those are, as a power of two.
+    apart: u32,
     /// How many triangles there are in all.
     triangles: usize,
     flocks: Vec<FlockRun>,
@@ -100,6 +104,8 @@ impl World {
             items: OnceLock::new(),
             runs: Vec::new(),
             firsts: Vec::new(),
+            marks: Vec::new(),
+            apart: 0,
             triangles: 0,
             flocks: Vec::new(),
             lights,
@@ -148,6 +154,7 @@ impl World {
         self.firsts.clear();
         self.firsts.extend(self.runs.iter().map(|run| run.first));
         self.triangles = take(self.scene.primitives.len()) as usize;
+        self.mark();
         self.flocks.clear();
         for (number, flock) in (0..).zip(&self.scene.flocks) {
             for node in flock.nodes.iter().filter(|node| is_seen(**node)) {
@@ -155,6 +162,20 @@ impl World {
                 self.flocks.push(FlockRun { first, flock: number, transform });
             }
         }
+    }
+
+    /// Marks where runs are, about as often as there are runs.
+    fn mark(&mut self) {
+        self.apart = (self.triangles / self.runs.len().max(1)).max(1).ilog2();
+        self.marks.clear();
+        let mut run = 0;
+        for first in (0..self.triangles).step_by(1 << self.apart) {
+            while self.firsts.get(run + 1).is_some_and(|next| *next as usize <= first) {
+                run += 1;
+            }
+            self.marks.push(run as u32);
+        }
+        self.marks.push(self.runs.len().saturating_sub(1) as u32);
     }
 
     /// The scene.
@@ -212,7 +233,9 @@ impl World {
 
     /// Where a triangle is listed, by item number.
     pub(super) fn place_of(&self, item: u32) -> Place {
-        let run = self.firsts.partition_point(|first| *first <= item) - 1;
+        let mark = (item >> self.apart) as usize;
+        let [from, to] = [self.marks[mark], self.marks[mark + 1]].map(|run| run as usize);
+        let run = from + self.firsts[from + 1..=to].partition_point(|first| *first <= item);
         Place { run: run as u32, triangle: item - self.firsts[run] }
     }
 
@@ -248,4 +271,31 @@ pub(super) fn cofactors(matrix: Mat3) -> Mat3 {
     let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     let turned = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
     if x.dot(y.cross(z)) < 0.0 { -turned } else { turned }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_are_found_whatever_the_sizes_of_meshes() {
+        for counts in
+            [&[][..], &[0], &[1], &[0, 0, 3, 0], &[1; 70], &[5, 0, 300, 0, 0, 1, 2, 40, 0], &[1, 1000, 1]]
+        {
+            let mut scene = Scene::new("meshes");
+            for (number, count) in counts.iter().enumerate() {
+                let corner = |at: u32| Vec3::new(at as f32, number as f32, 0.0);
+                let triangles: Vec<[u32; 3]> = (0..*count).map(|at| [at, at + 1, at + 2]).collect();
+                let mesh = scene.add_mesh(Mesh::new("mesh", (0..count + 2).map(corner).collect(), triangles));
+                scene.add_node(None, "node", Affine3A::from_translation(Vec3::Z), Some(mesh));
+            }
+            let world = World::new(scene);
+            let listed = &world.items().triangles;
+            assert_eq!(listed.len(), counts.iter().sum::<u32>() as usize);
+            for (item, corners) in (0..).zip(listed) {
+                assert_eq!(world.corners(item), Some(*corners), "{item} of {counts:?}");
+            }
+            assert_eq!(world.corners(listed.len() as u32), None);
+        }
+    }
 }

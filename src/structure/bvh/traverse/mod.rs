@@ -5,6 +5,7 @@
 
 mod boxes;
 mod count;
+mod gather;
 mod list;
 mod nearest;
 mod packet;
@@ -14,27 +15,29 @@ mod walk;
 
 pub use count::RayCounts;
 pub(super) use count::{Count, Uncounted};
+pub(super) use gather::in_packets;
 pub use list::TriangleList;
 pub(super) use packet::RAYS;
-use packet::{Together, together as walk_together};
+use packet::{Guess, Together, together as walk_together};
 use single::through as walk_single;
 
 use super::{Intersector, WideBvh};
 use crate::geometry::hit::TriangleTest;
 use crate::geometry::lanes::Kind;
 use crate::geometry::{Hit, Ray, Unit};
+use std::cell::Cell;
 
 /// Declares a function that runs a traversal on the unit it is told, with that unit's lanes for nodes and for blocks.
 macro_rules! on_unit_through {
-    (fn $name:ident($($argument:ident: $type:ty),*) -> $result:ty = $walk:ident $(, $const:ident)?) => {
+    (fn $name:ident<$b:lifetime>($($argument:ident: $type:ty),*) -> $result:ty = $walk:ident $(, $const:ident)?) => {
         #[inline]
-        fn $name<T: TriangleTest, C: Count $(, const $const: bool)?>(
-            unit: Unit, bvh: &WideBvh<T>, count: &mut C, $($argument: $type),*
+        fn $name<$b, T: TriangleTest, C: Count $(, const $const: bool)?>(
+            unit: Unit, bvh: &$b WideBvh<T>, count: &mut C, $($argument: $type),*
         ) -> $result {
             #[cfg(target_arch = "x86_64")]
             #[target_feature(enable = "avx2,bmi1,bmi2,popcnt,lzcnt")]
-            fn avx2<T: TriangleTest, C: Count $(, const $const: bool)?>(
-                bvh: &WideBvh<T>, count: &mut C, $($argument: $type),*
+            fn avx2<$b, T: TriangleTest, C: Count $(, const $const: bool)?>(
+                bvh: &$b WideBvh<T>, count: &mut C, $($argument: $type),*
             ) -> $result {
                 use crate::geometry::lanes::x86::{Lanes4, Lanes8};
                 // SAFETY: this function has the feature.
@@ -63,35 +66,8 @@ macro_rules! on_unit_through {
     };
 }
 
-on_unit_through!(fn through(ray: &Ray) -> Option<Hit> = walk_single, ANY);
-on_unit_through!(fn together(rays: &[Ray]) -> Option<Together> = walk_together, ANY);
-
-/// How many packets' rays are asked about one by one at most, after those of several in a row have come apart, before
-/// it is tried again.
-const ALONE: usize = 7;
-
-/// Answers for rays packet by packet, or for `one` where that does not pay. A packet tells whether it stayed together to
-/// the end; or none, and no answers, if its rays do not go the same way.
-pub(super) fn in_packets<A>(
-    rays: &[Ray],
-    answers: &mut [A],
-    mut packet: impl FnMut(&[Ray], &mut [A]) -> Option<bool>,
-    one: impl Fn(&Ray) -> A,
-) {
-    assert_eq!(rays.len(), answers.len(), "a place for the answer to each ray");
-    // How many are to be asked about alone, and how many it will be after the next that comes apart.
-    let (mut alone, mut next) = (0usize, 1);
-    for (rays, answers) in rays.chunks(RAYS).zip(answers.chunks_mut(RAYS)) {
-        // What is left over at the end is not worth it.
-        let is_tried = alone == 0 && rays.len() >= RAYS / 2;
-        let Some(stayed) = (if is_tried { packet(rays, answers) } else { None }) else {
-            alone = alone.saturating_sub(1);
-            answers.iter_mut().zip(rays).for_each(|(own, ray)| *own = one(ray));
-            continue;
-        };
-        (alone, next) = if stayed { (0, 1) } else { (next, ALONE.min(2 * next + 1)) };
-    }
-}
+on_unit_through!(fn through<'b>(ray: &Ray, guess: &mut Guess<'b>) -> Option<Hit> = walk_single, ANY);
+on_unit_through!(fn together<'b>(rays: &[Ray], guess: &mut Guess<'b>) -> Option<Together> = walk_together, ANY);
 
 impl<T: TriangleTest> WideBvh<T> {
     /// The nearest hit, by a vector unit of one's choice.
@@ -122,7 +98,7 @@ impl<T: TriangleTest> WideBvh<T> {
     /// # Panics
     /// If there are not as many `hits` as `rays`.
     pub fn closest_coherent_on(&self, unit: Unit, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        self.coherent::<_, false>(unit, rays, hits, |hit| hit, |ray| self.closest_on(unit, ray));
+        self.coherent::<_, false>(unit, rays, hits, |hit| hit);
     }
 
     /// Whether there is any hit, of rays that go much the same way, by a vector unit of one's choice. Where they turn out
@@ -131,45 +107,52 @@ impl<T: TriangleTest> WideBvh<T> {
     /// # Panics
     /// If there are not as many `occluded` as `rays`.
     pub fn occluded_coherent_on(&self, unit: Unit, rays: &[Ray], occluded: &mut [bool]) {
-        self.coherent::<_, true>(
-            unit,
-            rays,
-            occluded,
-            |hit| hit.is_some(),
-            |ray| self.occluded_on(unit, ray),
-        );
+        self.coherent::<_, true>(unit, rays, occluded, |hit| hit.is_some());
     }
 
-    /// Answers for rays by the hits they have in packets, or for `one`.
-    fn coherent<A, const ANY: bool>(
+    /// Answers for rays by the hits they have in packets, or alone.
+    fn coherent<A: Copy + Default, const ANY: bool>(
         &self,
         unit: Unit,
         rays: &[Ray],
         answers: &mut [A],
         answer: impl Fn(Option<Hit>) -> A,
-        one: impl Fn(&Ray) -> A,
     ) {
+        let guess = &Cell::new(Guess::default());
         let packet = |rays: &[Ray], answers: &mut [A]| {
-            let Together { hits, stayed } = self.packet::<ANY>(unit, rays)?;
+            let mut now = guess.get();
+            let Together { hits, stayed } = self.packet::<ANY>(unit, rays, &mut now)?;
+            guess.set(now);
             answers.iter_mut().zip(hits).for_each(|(own, hit)| *own = answer(hit));
             Some(stayed)
+        };
+        let one = |ray: &Ray| {
+            let mut now = guess.get();
+            let hit = through::<T, _, ANY>(unit, self, &mut Uncounted, ray, &mut now);
+            guess.set(now);
+            answer(hit)
         };
         in_packets(rays, answers, packet, one);
     }
 
     /// What comes of a packet; `None` if its rays do not go the same way.
-    fn packet<const ANY: bool>(&self, unit: Unit, rays: &[Ray]) -> Option<Together> {
-        together::<T, _, ANY>(unit, self, &mut Uncounted, rays)
+    fn packet<'b, const ANY: bool>(
+        &'b self,
+        unit: Unit,
+        rays: &[Ray],
+        guess: &mut Guess<'b>,
+    ) -> Option<Together> {
+        together::<T, _, ANY>(unit, self, &mut Uncounted, rays, guess)
     }
 
     #[inline]
     fn closest_to(&self, unit: Unit, ray: &Ray, count: &mut impl Count) -> Option<Hit> {
-        through::<T, _, false>(unit, self, count, ray)
+        through::<T, _, false>(unit, self, count, ray, &mut Guess::default())
     }
 
     #[inline]
     fn occluded_to(&self, unit: Unit, ray: &Ray, count: &mut impl Count) -> bool {
-        through::<T, _, true>(unit, self, count, ray).is_some()
+        through::<T, _, true>(unit, self, count, ray, &mut Guess::default()).is_some()
     }
 }
 

@@ -29,6 +29,11 @@ pub(in crate::structure::bvh) const RAYS: usize = 16;
 /// fewer than this.
 const MOST: usize = 64;
 
+/// What is asked about first by who looks for any hit: where the last was that found one, as neighbours' shadows are
+/// mostly of the same thing.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Guess<'b>(pub(super) Option<&'b Block>);
+
 /// What comes of a packet.
 pub(super) struct Together {
     /// The nearest hit of each ray, or with `ANY` one it has.
@@ -44,10 +49,11 @@ pub(super) struct Together {
 /// # Safety
 /// The processor has the vector units of the lanes for nodes `N` and for blocks `B`.
 #[inline(always)]
-pub(super) unsafe fn together<N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
-    bvh: &WideBvh<T>,
+pub(super) unsafe fn together<'b, N: Lanes, B: Lanes, T: TriangleTest, C: Count, const ANY: bool>(
+    bvh: &'b WideBvh<T>,
     count: &mut C,
     rays: &[Ray],
+    guess: &mut Guess<'b>,
 ) -> Option<Together> {
     // As for one ray: here, where the unit's own instructions make them.
     let mut aims = [const { MaybeUninit::<Aim>::uninit() }; RAYS];
@@ -70,29 +76,36 @@ pub(super) unsafe fn together<N: Lanes, B: Lanes, T: TriangleTest, C: Count, con
             farthest: span.far,
             under_way: (1 << RAYS) - 1,
             vectors: 0,
+            hit: guess.0,
             types: PhantomData,
         }
     };
+    if ANY && let Some(block) = guess.0 {
+        count.block();
+        // SAFETY: the processor is the caller's.
+        let _ = unsafe { several.block(block) };
+    }
     let mut places = [const { MaybeUninit::uninit() }; PLACES];
     let mut stayed = bvh.waiting <= PLACES;
-    if stayed {
+    if stayed && several.under_way != 0 {
         // SAFETY: the processor is the caller's, and the places are enough.
         let end = unsafe { walk::<N, T>(bvh, count, &mut several, Stack::of(&mut places)) };
         stayed = end.is_continue() || several.under_way == 0;
     }
+    guess.0 = several.hit;
     let mut hits = [None; RAYS];
     for (ray, (hit, aim)) in hits.iter_mut().zip(aims).enumerate() {
         let mut nearest = several.nearest[ray];
         if !stayed && several.under_way >> ray & 1 == 1 {
             // SAFETY: the processor is the caller's.
-            nearest = unsafe { go_on::<N, B, T, C, ANY>(bvh, count, aim, nearest) };
+            nearest = unsafe { go_on::<N, B, T, C, ANY>(bvh, count, aim, nearest, guess) };
         }
         *hit = nearest.hit(aim);
     }
     Some(Together { hits, stayed })
 }
 
-struct Several<'a, N, B, T, const ANY: bool> {
+struct Several<'a, 'b, N, B, T, const ANY: bool> {
     aims: &'a [Aim; RAYS],
     span: &'a Span,
     wide: Spread<N>,
@@ -104,10 +117,14 @@ struct Several<'a, N, B, T, const ANY: bool> {
     under_way: u64,
     /// Vectors of boxes and blocks tested.
     vectors: usize,
+    /// The block that a hit was last taken from.
+    hit: Option<&'b Block>,
     types: PhantomData<T>,
 }
 
-impl<N: Lanes, B: Lanes, T: TriangleTest, const ANY: bool> Walker<N> for Several<'_, N, B, T, ANY> {
+impl<'b, N: Lanes, B: Lanes, T: TriangleTest, const ANY: bool> Walker<'b, N>
+    for Several<'_, 'b, N, B, T, ANY>
+{
     #[inline(always)]
     fn rows(&self) -> [usize; 3] {
         self.span.rows()
@@ -126,7 +143,7 @@ impl<N: Lanes, B: Lanes, T: TriangleTest, const ANY: bool> Walker<N> for Several
     }
 
     #[inline(always)]
-    unsafe fn block(&mut self, block: &Block) -> ControlFlow<()> {
+    unsafe fn block(&mut self, block: &'b Block) -> ControlFlow<()> {
         self.vectors += WIDTH / N::LEN;
         if self.vectors > MOST * (WIDTH / N::LEN) {
             return ControlFlow::Break(());
@@ -167,6 +184,7 @@ impl<N: Lanes, B: Lanes, T: TriangleTest, const ANY: bool> Walker<N> for Several
             }
         }
         if is_taken {
+            self.hit = Some(block);
             let mut farthest = 0.0;
             for (ray, nearest) in self.nearest.iter().enumerate() {
                 if ANY && nearest.is_hit() {
@@ -176,6 +194,9 @@ impl<N: Lanes, B: Lanes, T: TriangleTest, const ANY: bool> Walker<N> for Several
                 }
             }
             self.farthest = farthest;
+            if ANY && self.under_way == 0 {
+                return ControlFlow::Break(());
+            }
         }
         ControlFlow::Continue(())
     }

@@ -1,7 +1,7 @@
 //! Every way through a wide hierarchy against the list gone through one by one, and that against f64.
 
 use super::super::{BinaryBvh, BinaryNode, Intersector, WideBvh, leaks, leaks_together};
-use super::{RayCounts, TriangleList};
+use super::{Guess, RayCounts, TriangleList};
 use crate::geometry::hit::{Fast, TriangleTest, Watertight};
 use crate::geometry::oracle::{Crossing, nearest_crossing};
 use crate::geometry::{Aabb, Hit, Ray, Unit};
@@ -228,8 +228,11 @@ fn packets_that_come_apart_tell_what_the_list_tells() {
     let wide = WideBvh::<Watertight>::new(&bvh, &triangles);
     for unit in Unit::all() {
         let stayed = |rays: &[Ray]| {
-            [wide.packet::<false>(unit, rays), wide.packet::<true>(unit, rays)]
-                .map(|packet| packet.map(|packet| packet.stayed))
+            [
+                wide.packet::<false>(unit, rays, &mut Guess::default()),
+                wide.packet::<true>(unit, rays, &mut Guess::default()),
+            ]
+            .map(|packet| packet.map(|packet| packet.stayed))
         };
         let packets: Vec<_> = rays.chunks(16).map(stayed).collect();
         for way in [0, 1] {

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 ///
 /// # Safety of the methods
 /// The processor has the vector unit of the lanes.
-pub(super) trait Walker<N: Lanes> {
+pub(super) trait Walker<'b, N: Lanes> {
     /// By axis, of six rows of planes, least and greatest of each axis, the one come to first; the other of its pair
     /// differs in the last bit.
     fn rows(&self) -> [usize; 3];
@@ -26,7 +26,7 @@ pub(super) trait Walker<N: Lanes> {
     unsafe fn slab(&mut self, first: [N; 3], last: [N; 3]) -> [N; 2];
 
     /// Tests the triangles of a block. A break ends the way.
-    unsafe fn block(&mut self, block: &Block) -> ControlFlow<()>;
+    unsafe fn block(&mut self, block: &'b Block) -> ControlFlow<()>;
 }
 
 /// Takes a walker through, nearer boxes first. Tells whether it came to the end or broke off.
@@ -34,10 +34,10 @@ pub(super) trait Walker<N: Lanes> {
 /// # Safety
 /// The processor has the lanes' vector unit, and `stack` as many places as may wait.
 #[inline(always)]
-pub(super) unsafe fn walk<N: Lanes, T: TriangleTest>(
-    bvh: &WideBvh<T>,
+pub(super) unsafe fn walk<'b, N: Lanes, T: TriangleTest>(
+    bvh: &'b WideBvh<T>,
     count: &mut impl Count,
-    walker: &mut impl Walker<N>,
+    walker: &mut impl Walker<'b, N>,
     mut stack: Stack<'_>,
 ) -> ControlFlow<()> {
     if bvh.nodes.is_empty() {
@@ -79,10 +79,10 @@ pub(super) unsafe fn walk<N: Lanes, T: TriangleTest>(
 /// # Safety
 /// The processor has the lanes' vector unit, and rows are below six.
 #[inline(always)]
-unsafe fn met<N: Lanes>(
+unsafe fn met<'b, N: Lanes>(
     node: &Node,
     rows: [usize; 3],
-    walker: &mut impl Walker<N>,
+    walker: &mut impl Walker<'b, N>,
     enters: &mut [f32; WIDTH],
 ) -> u64 {
     let mut met = 0;

@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3, Vec3A};
 
 /// By how much distances are rounded outwards: twice what the box test of triangles takes, so that a box around their
 /// boxes is never passed over for its own rounding.
-const SLACK: f64 = 1.0 / (1 << 19) as f64;
+const SLACK: f32 = 1.0 / (1 << 19) as f32;
 /// By how much farther than a hit boxes may begin and still be looked into: of hits equally near all are to be seen.
 const BEYOND: f64 = 1.0 / (1 << 18) as f64;
 /// What is at least taken for the rounding of an origin, as a share of the greatest coordinate there is.
@@ -53,20 +53,22 @@ impl Probe {
         if !usable {
             return None;
         }
-        let direction = ray.direction / longest;
+        let direction = Vec3A::from((ray.direction / longest).as_vec3());
         // A lesser part comes to less than the room over the length of a ray.
-        let small = direction.abs().cmplt(DVec3::splat(f64::from(LEAST_PART)));
-        let rate = DVec3::select(small, DVec3::ZERO.copysign(direction), direction).recip();
-        let rises = direction.to_array().map(f64::is_sign_positive);
+        let small = direction.abs().cmplt(Vec3A::splat(LEAST_PART));
+        // Wrong by 2^-23 at most, of which there are many in the slack.
+        let rate = Vec3A::select(small, Vec3A::ZERO.copysign(direction), direction).recip();
+        let falls = direction.is_negative_bitmask();
+        let rises = [falls & 1 == 0, falls & 2 == 0, falls & 4 == 0];
         let pick = |up: Vec3, down: Vec3| Vec3::select(rises.into(), up, down);
         let lengths = longest * factor;
         Some(Self {
             first_origin: pick(high, low),
             last_origin: pick(low, high),
-            first_rate: (rate * (1.0 - SLACK)).as_vec3(),
-            last_rate: (rate * (1.0 + SLACK)).as_vec3(),
-            direction: direction.as_vec3(),
-            near: ((near - start) * lengths * (1.0 - SLACK)) as f32,
+            first_rate: (rate * (1.0 - SLACK)).into(),
+            last_rate: (rate * (1.0 + SLACK)).into(),
+            direction: direction.into(),
+            near: ((near - start) * lengths * f64::from(1.0 - SLACK)) as f32,
             rises,
             lengths,
             start,
@@ -173,12 +175,15 @@ impl<L: Lanes> Feeler<L> {
     }
 }
 
-/// Not more than it is, by one place at most.
+/// Half a place and some more, by which what is rounded to f32 may be wrong at most: as shares of it, and at all.
+const PLACE: [f64; 2] = [1.0 / (1 << 23) as f64, f32::MIN_POSITIVE as f64];
+
+/// Not more than it is, by two places at most.
 fn down(at: DVec3) -> Vec3 {
-    Vec3::from_array(at.to_array().map(|at| (at as f32).next_down()))
+    (at - (at.abs() * PLACE[0] + PLACE[1])).as_vec3()
 }
 
-/// Not less than it is, by one place at most.
+/// Not less than it is, by two places at most.
 fn up(at: DVec3) -> Vec3 {
-    Vec3::from_array(at.to_array().map(|at| (at as f32).next_up()))
+    (at + (at.abs() * PLACE[0] + PLACE[1])).as_vec3()
 }

@@ -88,11 +88,25 @@ impl Left {
         packet: &mut impl FnMut(&[Ray], &mut [A]) -> Option<bool>,
         one: &impl Fn(&Ray) -> A,
     ) {
-        let mut ways = [Way::default(); AMONG];
         if self.count >= FEWEST {
-            for number in &self.numbers[..self.count] {
-                ways[usize::from(*number)] = Way::of(&rays[usize::from(*number)]);
-            }
+            self.answer_alike(rays, answers, packet, one);
+        }
+        for number in &self.numbers[..self.count] {
+            answers[usize::from(*number)] = one(&rays[usize::from(*number)]);
+        }
+    }
+
+    /// Answers until those that are left are too few, or go too many ways.
+    fn answer_alike<A: Copy + Default>(
+        &mut self,
+        rays: &[Ray],
+        answers: &mut [A],
+        packet: &mut impl FnMut(&[Ray], &mut [A]) -> Option<bool>,
+        one: &impl Fn(&Ray) -> A,
+    ) {
+        let mut ways = [Way::default(); AMONG];
+        for number in &self.numbers[..self.count] {
+            ways[usize::from(*number)] = Way::of(&rays[usize::from(*number)]);
         }
         let mut vain = 0;
         while self.count >= FEWEST && vain < VAIN {
@@ -107,9 +121,6 @@ impl Left {
             }
             vain = if together == Some(true) { 0 } else { vain + 1 };
             alike.iter().zip(found).for_each(|(number, found)| answers[usize::from(*number)] = *found);
-        }
-        for number in &self.numbers[..self.count] {
-            answers[usize::from(*number)] = one(&rays[usize::from(*number)]);
         }
     }
 

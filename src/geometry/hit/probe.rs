@@ -175,15 +175,15 @@ impl<L: Lanes> Feeler<L> {
     }
 }
 
-/// Half a place and some more, by which what is rounded to f32 may be wrong at most: as shares of it, and at all.
-const PLACE: [f64; 2] = [1.0 / (1 << 23) as f64, f32::MIN_POSITIVE as f64];
+/// More than a number is changed by rounding it to f32: as a share of it, and however small it is.
+const ROUNDED: [f64; 2] = [1.0 / (1 << 23) as f64, f32::MIN_POSITIVE as f64];
 
 /// Not more than it is, by two places at most.
 fn down(at: DVec3) -> Vec3 {
-    (at - (at.abs() * PLACE[0] + PLACE[1])).as_vec3()
+    (at - (at.abs() * ROUNDED[0] + ROUNDED[1])).as_vec3()
 }
 
 /// Not less than it is, by two places at most.
 fn up(at: DVec3) -> Vec3 {
-    (at + (at.abs() * PLACE[0] + PLACE[1])).as_vec3()
+    (at + (at.abs() * ROUNDED[0] + ROUNDED[1])).as_vec3()
 }

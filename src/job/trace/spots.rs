@@ -65,8 +65,9 @@ impl Spots {
             touched ^ pixels[look.square.pixels[0]][0] ^ pixels[look.square.pixels[2]][0]
         });
         std::hint::black_box(touched);
+        let linear = &*LINEAR;
         for look in &self.looks {
-            self.all[look.of].tint = look.square.colour(&world.scene.textures[look.texture as usize]);
+            self.all[look.of].tint = look.square.colour(&world.scene.textures[look.texture as usize], linear);
         }
         &self.all
     }
@@ -106,12 +107,14 @@ impl Square {
         Self { pixels, share: place - low }
     }
 
-    /// The colour between them.
-    fn colour(&self, texture: &Texture) -> Vec3 {
-        let [a, b, c, d] = self.pixels.map(|pixel| {
-            let [r, g, b] = texture.pixels[pixel].map(|code| LINEAR[code as usize]);
-            Vec3::new(r, g, b)
-        });
+    /// The colour between them; `linear` is [`LINEAR`].
+    fn colour(&self, texture: &Texture, linear: &[f32; 256]) -> Vec3 {
+        let colour = |pixel: usize| {
+            let [r, g, b] = texture.pixels[pixel];
+            Vec3::new(linear[usize::from(r)], linear[usize::from(g)], linear[usize::from(b)])
+        };
+        let [a, b, c, d] = self.pixels;
+        let [a, b, c, d] = [colour(a), colour(b), colour(c), colour(d)];
         let share = self.share;
         let upper = a * (1.0 - share.x) + b * share.x;
         let lower = c * (1.0 - share.x) + d * share.x;
@@ -129,7 +132,7 @@ mod tests {
         let texture = Texture { name: "t".into(), width: 2, height: 2, pixels: vec![r, g, b, w] };
         for shift in [0.0, 1.0, -3.0] {
             let at =
-                |u: f32, v: f32| Square::about(Vec2::new(u + shift, v - shift), &texture).colour(&texture);
+                |u: f32, v: f32| Square::about(Vec2::new(u + shift, v - shift), &texture).colour(&texture, &LINEAR);
             assert_eq!(at(0.25, 0.25), Vec3::X);
             assert_eq!(at(0.75, 0.25), Vec3::Y);
             assert_eq!(at(0.25, 0.75), Vec3::Z);
@@ -138,7 +141,7 @@ mod tests {
         }
         let grey = Texture { name: "g".into(), width: 1, height: 1, pixels: vec![[188; 3]] };
         assert!(
-            (Square::about(Vec2::splat(9.9), &grey).colour(&grey).x - 0.503).abs() < 1e-3,
+            (Square::about(Vec2::splat(9.9), &grey).colour(&grey, &LINEAR).x - 0.503).abs() < 1e-3,
             "sRGB is decoded"
         );
     }
@@ -154,7 +157,7 @@ mod tests {
                 let square = Square::about(Vec2::new(u, v), &texture);
                 assert!(square.pixels.iter().all(|pixel| *pixel < count), "{u} {v} of {width} x {height}");
                 let is_place = u.is_finite() && v.is_finite();
-                assert!(!is_place || square.colour(&texture).distance(Vec3::ONE) < 1e-6);
+                assert!(!is_place || square.colour(&texture, &LINEAR).distance(Vec3::ONE) < 1e-6);
             }
         }
     }

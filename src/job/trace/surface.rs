@@ -64,7 +64,7 @@ impl World {
         let smooth = shading.normals.of(placed.triangle, vertices).and_then(|normals| {
             let normal = normals.iter().zip(weights).fold(Vec3::ZERO, |sum, (n, w)| sum + *n * w);
             // An unused slot of a reader may be 0, and opposite normals cancel.
-            unit((placed.normals * normal).as_dvec3())
+            unit((*placed.normals * normal).as_dvec3())
         });
         let material = self.material(shading.materials.of(placed.triangle));
         let greatest = corners.iter().fold(0.0, |most: f32, corner| most.max(corner.abs().max_element()));

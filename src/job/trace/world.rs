@@ -50,6 +50,8 @@ pub struct World {
     items: OnceLock<Items>,
     /// One for each node that places a mesh, in the order of their triangles.
     runs: Vec<Placement>,
+    /// What takes normals to the world, of each run ([`cofactors`]).
+    normals: Vec<Mat3>,
     /// The first triangle of each run: what is searched, close together.
     firsts: Vec<u32>,
     /// Of which run the first of so many triangles is, of the next as many, and so on; and the last run.
@@ -89,7 +91,7 @@ pub(super) struct Placed<'a> {
     /// In the world.
     pub(super) corners: [Vec3; 3],
     /// Takes normals to the world, but for their length; a mirrored mesh keeps its normals on their side.
-    pub(super) normals: Mat3,
+    pub(super) normals: &'a Mat3,
 }
 
 impl World {
@@ -103,6 +105,7 @@ impl World {
             scene,
             items: OnceLock::new(),
             runs: Vec::new(),
+            normals: Vec::new(),
             firsts: Vec::new(),
             marks: Vec::new(),
             apart: 0,
@@ -151,6 +154,8 @@ impl World {
             let first = take(self.scene.meshes[mesh as usize].triangles.len());
             self.runs.push(Placement { mesh, first, transform: *transform });
         }
+        self.normals.clear();
+        self.normals.extend(self.runs.iter().map(|run| cofactors(run.transform.matrix3.into())));
         self.firsts.clear();
         self.firsts.extend(self.runs.iter().map(|run| run.first));
         self.triangles = take(self.scene.primitives.len()) as usize;
@@ -246,12 +251,15 @@ impl World {
 
     /// A triangle in the world.
     pub(super) fn placed(&self, place: Place) -> Placed<'_> {
-        let transform = &self.runs[place.run as usize].transform;
+        let run = &self.runs[place.run as usize];
         let mesh = self.mesh(place);
         let triangle = place.triangle as usize;
-        let put = |vertex: u32| transform.transform_point3(mesh.positions[vertex as usize]);
-        let corners = mesh.triangles[triangle].map(put);
-        Placed { mesh, triangle, corners, normals: cofactors(transform.matrix3.into()) }
+        let put = |vertex: u32| run.transform.transform_point3(mesh.positions[vertex as usize]);
+        let corners = match self.items.get() {
+            Some(items) => items.triangles[run.first as usize + triangle],
+            None => mesh.triangles[triangle].map(put),
+        };
+        Placed { mesh, triangle, corners, normals: &self.normals[place.run as usize] }
     }
 
     /// A sphere or cone, by item number; and from its space to the world's, where that is not the same.

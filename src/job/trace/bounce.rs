@@ -16,6 +16,7 @@ pub(super) struct Bounce {
 }
 
 impl Bounce {
+    #[inline(always)]
     pub(super) fn new(direction: Vec3, surface: &Surface<'_>) -> Self {
         let outside = direction.dot(surface.flat) <= 0.0;
         let side = |normal: Vec3| if outside { normal } else { -normal };
@@ -26,23 +27,28 @@ impl Bounce {
     }
 
     /// Where rays start that leave on this side.
+    #[inline(always)]
     pub(super) fn above(&self, surface: &Surface<'_>) -> Vec3 {
         surface.point + self.flat * surface.apart
     }
 
     /// Where rays start that leave on the other side.
+    #[inline(always)]
     pub(super) fn below(&self, surface: &Surface<'_>) -> Vec3 {
         surface.point - self.flat * surface.apart
     }
 
     /// The mirrored direction; about the flat normal where the other would send it into the shape.
+    #[inline(always)]
     pub(super) fn mirrored(&self) -> Vec3 {
-        let about = |normal: Vec3| (self.direction - normal * (2.0 * self.direction.dot(normal))).normalize();
+        // As long as the direction was, that is 1.
+        let about = |normal: Vec3| self.direction - normal * (2.0 * self.direction.dot(normal));
         let mirrored = about(self.smooth);
         if mirrored.dot(self.flat) > 0.0 { mirrored } else { about(self.flat) }
     }
 
     /// The direction in which light goes on through the surface (Snell); none if it is wholly mirrored inside.
+    #[inline(always)]
     pub(super) fn through(&self, surface: &Surface<'_>) -> Option<Vec3> {
         let index = surface.material.index;
         if index == 1.0 {
@@ -60,6 +66,7 @@ impl Bounce {
     }
 
     /// The share of light that is mirrored.
+    #[inline(always)]
     pub(super) fn mirrored_share(&self, surface: &Surface<'_>) -> Vec3 {
         let material = surface.material;
         if !material.fresnel {

@@ -48,6 +48,7 @@ struct Way {
 
 impl Lighting {
     /// Adds a surface whose light `of` is to have, unless light makes nothing of it; `mirrored` is the mirrored way.
+    #[inline(always)]
     pub(super) fn add(
         &mut self,
         tracer: &Tracer<'_>,
@@ -78,6 +79,7 @@ impl Lighting {
 
     /// Adds to each surface's colour what the lights make of it, light after light, and forgets the surfaces. The rays to
     /// one light are asked about together; where surfaces take lights of their choice, those to the next light of each.
+    #[inline(always)]
     pub(super) fn light(&mut self, tracer: &Tracer<'_>, colours: &mut [Vec3], counts: &mut Counts) {
         let lights = tracer.world.lights();
         let asked = lights.len().min(tracer.look.most_lights as usize);

@@ -82,6 +82,7 @@ pub(super) fn some_number(point: Vec3) -> usize {
 }
 
 /// A number to a whole power, by squaring.
+#[inline(always)]
 pub(super) fn power(base: f32, exponent: u32) -> f32 {
     let (mut result, mut square, mut left) = (1.0, base, exponent);
     while left > 0 {

@@ -39,6 +39,7 @@ struct Look {
 
 impl Spots {
     /// Finds the spot of each hit, and any for what is none.
+    #[inline(always)]
     pub(super) fn find(&mut self, world: &World, hits: &[Option<Hit>]) -> &[Spot] {
         let triangle = |hit: &Option<Hit>| hit.filter(|hit| (hit.item as usize) < world.triangles());
         self.all.clear();
@@ -90,6 +91,7 @@ struct Square {
 }
 
 impl Square {
+    #[inline(always)]
     fn about(at: Vec2, texture: &Texture) -> Self {
         let size = Vec2::new(texture.width as f32, texture.height as f32);
         // Pixels count from their middles.
@@ -108,6 +110,7 @@ impl Square {
     }
 
     /// The colour between them; `linear` is [`LINEAR`].
+    #[inline(always)]
     fn colour(&self, texture: &Texture, linear: &[f32; 256]) -> Vec3 {
         let colour = |pixel: usize| {
             let [r, g, b] = texture.pixels[pixel];

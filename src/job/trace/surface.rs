@@ -41,6 +41,7 @@ impl World {
     }
 
     /// What is where a ray met an item, whose spot it is.
+    #[inline(always)]
     pub(super) fn surface(&self, ray: &Ray, hit: &Hit, spot: &Spot) -> Surface<'_> {
         if (hit.item as usize) < self.triangles() {
             return self.on_triangle(ray, hit, spot);
@@ -49,6 +50,7 @@ impl World {
         self.on_primitive(ray, hit.t, primitive, transform)
     }
 
+    #[inline(always)]
     fn on_triangle(&self, ray: &Ray, hit: &Hit, spot: &Spot) -> Surface<'_> {
         let placed = self.placed(spot.place);
         let corners = placed.corners;
@@ -122,6 +124,13 @@ fn normals(matrix: DMat3) -> DMat3 {
 }
 
 /// Of unit length; none if it has no direction.
+#[inline(always)]
 fn unit(vector: DVec3) -> Option<Vec3> {
+    let rounded = vector.as_vec3();
+    let square = rounded.length_squared();
+    // Neither beyond f32 nor worn away by its least numbers.
+    if (1e-30..1e30).contains(&square) {
+        return Some(rounded * (1.0 / square.sqrt()));
+    }
     vector.try_normalize().map(|unit| unit.as_vec3())
 }

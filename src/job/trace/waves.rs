@@ -13,7 +13,8 @@ use std::cell::Cell;
 
 use glam::Vec3;
 
-use crate::geometry::{Hit, Ray};
+use crate::geometry::lanes::Kind;
+use crate::geometry::{Hit, Ray, Unit};
 
 use super::bounce::Bounce;
 use super::lighting::Lighting;
@@ -23,13 +24,25 @@ use super::{Counts, Tracer};
 
 /// Room for waves, to be used again and again: nothing is allocated but where more rays are asked about, or bounce more
 /// often, than before.
-#[derive(Default)]
 pub(super) struct Waves {
+    unit: Unit,
     first: Wave,
     /// Waves that nobody follows now, all of them empty.
     idle: Vec<Wave>,
     spots: Spots,
     lighting: Lighting,
+}
+
+impl Default for Waves {
+    fn default() -> Self {
+        Self {
+            unit: Unit::best(),
+            first: Wave::default(),
+            idle: Vec::new(),
+            spots: Spots::default(),
+            lighting: Lighting::default(),
+        }
+    }
 }
 
 thread_local! {
@@ -66,6 +79,23 @@ impl Waves {
 
     /// Finds the colours of a wave that so many bounces came before.
     fn follow(&mut self, tracer: &Tracer<'_>, wave: &mut Wave, depth: u32, counts: &mut Counts) {
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx2,bmi1,bmi2,popcnt,lzcnt")]
+        fn avx2(waves: &mut Waves, tracer: &Tracer<'_>, wave: &mut Wave, depth: u32, counts: &mut Counts) {
+            waves.follow_here(tracer, wave, depth, counts);
+        }
+        match self.unit.0 {
+            // SAFETY: a `Unit` is only made where it is there, this one where the bit instructions are too.
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx2 => unsafe { avx2(self, tracer, wave, depth, counts) },
+            _ => self.follow_here(tracer, wave, depth, counts),
+        }
+    }
+
+    /// The same, by the instructions of whoever it is inlined into, with all that it asks: no sum is made in another
+    /// order for it.
+    #[inline(always)]
+    fn follow_here(&mut self, tracer: &Tracer<'_>, wave: &mut Wave, depth: u32, counts: &mut Counts) {
         wave.hits.resize(wave.rays.len(), None);
         tracer.intersector.closest_coherent(&wave.rays, &mut wave.hits);
         let mut mirrored = self.idle.pop().unwrap_or_default();

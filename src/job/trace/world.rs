@@ -237,6 +237,7 @@ impl World {
     }
 
     /// Where a triangle is listed, by item number.
+    #[inline(always)]
     pub(super) fn place_of(&self, item: u32) -> Place {
         let mark = (item >> self.apart) as usize;
         let [from, to] = [self.marks[mark], self.marks[mark + 1]].map(|run| run as usize);
@@ -245,11 +246,13 @@ impl World {
     }
 
     /// The mesh of a triangle.
+    #[inline(always)]
     pub(super) fn mesh(&self, place: Place) -> &Mesh {
         &self.scene.meshes[self.runs[place.run as usize].mesh as usize]
     }
 
     /// A triangle in the world.
+    #[inline(always)]
     pub(super) fn placed(&self, place: Place) -> Placed<'_> {
         let run = &self.runs[place.run as usize];
         let mesh = self.mesh(place);

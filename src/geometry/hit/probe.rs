@@ -3,7 +3,7 @@
 
 use super::Scale;
 use super::aim::{LEAST_PART, rows, spread};
-use super::span::{APART, Seek, Slab, Span};
+use super::span::{Seek, Slab};
 use crate::geometry::FineRay;
 use crate::geometry::lanes::Lanes;
 use glam::{DVec3, Vec3, Vec3A};
@@ -24,8 +24,6 @@ pub(crate) struct Probe {
     last_origin: Vec3,
     first_rate: Vec3,
     last_rate: Vec3,
-    /// Its greatest part is 1.
-    direction: Vec3,
     near: f32,
     /// By axis, whether it goes up.
     rises: [bool; 3],
@@ -67,7 +65,6 @@ impl Probe {
             last_origin: pick(low, high),
             first_rate: (rate * (1.0 - SLACK)).into(),
             last_rate: (rate * (1.0 + SLACK)).into(),
-            direction: direction.into(),
             near: ((near - start) * lengths * f64::from(1.0 - SLACK)) as f32,
             rises,
             lengths,
@@ -80,37 +77,6 @@ impl Probe {
     pub(crate) fn reach(&self, t: f32) -> f32 {
         // Not infinite, which is where boxes begin that are met nowhere.
         (((f64::from(t) - self.start) * self.lengths * (1.0 + BEYOND)) as f32).min(f32::MAX)
-    }
-
-    /// What some of these span; none if they do not go much the same way.
-    #[inline]
-    pub(crate) fn span(probes: &[Self]) -> Option<Span> {
-        let first = probes.first()?;
-        let like_first = |probe: &Self| {
-            probe.rises == first.rises
-                && (probe.direction - first.direction).abs().max_element() <= APART
-                && probe.last_rate.is_finite()
-        };
-        if !probes.iter().all(like_first) {
-            return None;
-        }
-        let over = |part: fn(&Self) -> Vec3| {
-            let part = |probe| Vec3A::from(part(probe));
-            probes.iter().fold([part(first); 2], |[least, greatest], probe| {
-                [least.min(part(probe)), greatest.max(part(probe))]
-            })
-        };
-        let pick = |up: Vec3A, down: Vec3A| Vec3A::select(first.rises.into(), up, down);
-        let [first_origins, last_origins] = [over(|of| of.first_origin), over(|of| of.last_origin)];
-        Some(Span {
-            first_origin: pick(first_origins[1], first_origins[0]),
-            last_origin: pick(last_origins[0], last_origins[1]),
-            first_rate: over(|of| of.first_rate),
-            last_rate: over(|of| of.last_rate),
-            near: probes.iter().fold(f32::INFINITY, |least, of| least.min(of.near)),
-            far: f32::MAX,
-            rises: first.rises,
-        })
     }
 }
 

@@ -1,5 +1,6 @@
 //! What rays that go much the same way have in common.
 
+use super::Scale;
 use super::aim::{Aim, rises, rows, spread};
 use crate::geometry::Ray;
 use crate::geometry::lanes::Lanes;
@@ -59,6 +60,73 @@ impl Span {
             far: aims.iter().fold(0.0, |greatest, aim| aim.far.max(greatest)),
             rises,
         })
+    }
+}
+
+/// By how much distances of rays [`Span::about`] is told of are rounded outwards: four times as far as one ray's are, if
+/// its origin may be anywhere near.
+const SLACK: f32 = 1.0 / (1 << 17) as f32;
+/// By how much farther than it reaches a ray is taken to reach.
+const BEYOND: f32 = 1.0 + 1.0 / (1 << 16) as f32;
+/// What is at least taken for the rounding of an origin, as a share of the greatest coordinate.
+const ROUNDED: f32 = 1.0 / (1 << 22) as f32;
+/// Rates beyond this are of parts so small that their own rounding tells.
+const MOST_RATE: f32 = (1u128 << 100) as f32;
+
+impl Span {
+    /// What rays span each of which may be anywhere within `error` of where it is said to be, along each axis: a share of
+    /// the sum of its origin's and the scale's greatest coordinates. In the rays' own `t`, as [`Span::reach`] is.
+    /// `None` if they do not go much the same way, one begins before its origin, or one meets nothing whatever there is.
+    ///
+    /// A box is met by it that is met by the [`Probe`](super::Probe) of any of them.
+    #[inline]
+    pub(crate) fn about(rays: &[Ray], scale: Scale, error: f32) -> Option<Self> {
+        let first = rays.first()?;
+        let way = Way::of(first);
+        let is_like_first = |ray: &Ray| {
+            ray.near >= 0.0
+                && ray.origin.is_finite()
+                && ray.direction.is_finite()
+                && Way::of(ray).is_like(way)
+        };
+        if !rays.iter().all(is_like_first) {
+            return None;
+        }
+        let over = |part: fn(&Ray) -> Vec3A| {
+            rays.iter().fold([part(first); 2], |[least, greatest], ray| {
+                [least.min(part(ray)), greatest.max(part(ray))]
+            })
+        };
+        let lengths = scale.factor();
+        let [low, high] = over(|ray| ray.origin.into()).map(|origin| origin * lengths);
+        let greatest = low.abs().max(high.abs()).max_element();
+        // No coordinate of the scale is above 2.
+        let room = greatest * ROUNDED + (greatest + 2.0) * error + f32::MIN_POSITIVE;
+        let (low, high) = (low - room, high + room);
+        let [least, greatest] = over(|ray| ray.direction.into()).map(|direction| direction * lengths);
+        let rates = [greatest.recip(), least.recip()];
+        let are_usable = |rate: Vec3A| rate.abs().max_element() < MOST_RATE;
+        if !(low.is_finite() && high.is_finite() && rates.into_iter().all(are_usable)) {
+            return None;
+        }
+        let rises = [0, 1, 2].map(|axis| way.octant >> axis & 1 == 0);
+        let pick = |up: Vec3A, down: Vec3A| Vec3A::select(rises.into(), up, down);
+        Some(Self {
+            first_origin: pick(high, low),
+            last_origin: pick(low, high),
+            first_rate: rates.map(|rate| rate * (1.0 - SLACK)),
+            last_rate: rates.map(|rate| rate * (1.0 + SLACK)),
+            near: rays.iter().fold(f32::INFINITY, |least, ray| least.min(ray.near)) * (1.0 - SLACK),
+            far: Self::reach(rays.iter().fold(0.0, |farthest, ray| ray.far.max(farthest))),
+            rises,
+        })
+    }
+
+    /// How far a box may begin that has a point at `t` on one of the rays that it is [`Span::about`], or before.
+    #[inline]
+    pub(crate) fn reach(t: f32) -> f32 {
+        // Not infinite, which is where boxes begin that are met nowhere.
+        (t * BEYOND).min(f32::MAX)
     }
 }
 

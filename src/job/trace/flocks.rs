@@ -3,7 +3,7 @@
 //! Boxes are tested in f32 by the widest vector unit there is, shapes in f64, as they are without a hierarchy; into a
 //! flock's space a ray is taken in f64 too, so what is told is what [`super::List`] tells, bit for bit.
 
-use glam::Affine3A;
+use glam::{Affine3A, Vec3};
 
 use crate::geometry::{Aabb, FineRay, Hit, Ray};
 use crate::scene::{Primitive, Shape};
@@ -19,6 +19,9 @@ const ROOM: f32 = 4.0 * f32::EPSILON;
 const ROUNDING: f64 = 1.0 / (1u64 << 48) as f64;
 /// Beyond this skew a place counts as flat, and what stands there is not met.
 const MOST_SKEW: f64 = (1 << 20) as f64;
+
+/// Of how many rays in a row it is asked at once whether they miss all there is.
+const TOGETHER: usize = 16;
 
 /// Where a flock stands.
 #[derive(Clone, Copy, Debug)]
@@ -131,6 +134,37 @@ impl Flocks {
             f32::NEG_INFINITY
         });
         met
+    }
+
+    /// What is nearest to each ray, what it meets so far being known.
+    pub(super) fn nearest_of_each(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        let mut known = [Ray::new(Vec3::ZERO, Vec3::ZERO); TOGETHER];
+        for (rays, hits) in rays.chunks(TOGETHER).zip(hits.chunks_mut(TOGETHER)) {
+            for ((known, ray), hit) in known.iter_mut().zip(rays).zip(&*hits) {
+                *known = Ray { far: hit.map_or(ray.far, |hit| hit.t), ..*ray };
+            }
+            if !self.are_missed_by(&known[..rays.len()]) {
+                hits.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.nearest(ray, *hit));
+            }
+        }
+    }
+
+    /// Adds which rays meet anything to those that do already.
+    pub(super) fn occluded_each(&self, rays: &[Ray], occluded: &mut [bool]) {
+        for (rays, occluded) in rays.chunks(TOGETHER).zip(occluded.chunks_mut(TOGETHER)) {
+            if !occluded.iter().all(|occluded| *occluded) && !self.are_missed_by(rays) {
+                let others = occluded.iter_mut().zip(rays).filter(|(occluded, _)| !**occluded);
+                others.for_each(|(occluded, ray)| *occluded = self.occluded(ray));
+            }
+        }
+    }
+
+    /// Whether it can be told at once that no ray meets anything.
+    fn are_missed_by(&self, rays: &[Ray]) -> bool {
+        match &self.stand[..] {
+            [Standing { cloud, place: None, .. }] => self.clouds[*cloud as usize].bvh.is_missed_by(rays, 0.0),
+            _ => self.top.is_missed_by(rays, self.error),
+        }
     }
 
     /// Tells each hit on the way, and is told how far the ray reaches from then on.

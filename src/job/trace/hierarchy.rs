@@ -240,18 +240,14 @@ impl Intersector for Hierarchy {
     fn closest_coherent(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
         each!(&self.triangles, bvh => bvh.closest_coherent(rays, hits));
         if !self.others.is_empty() {
-            for (ray, hit) in rays.iter().zip(hits) {
-                *hit = self.others.nearest(ray, *hit);
-            }
+            self.others.nearest_of_each(rays, hits);
         }
     }
 
     fn occluded_coherent(&self, rays: &[Ray], occluded: &mut [bool]) {
         each!(&self.triangles, bvh => bvh.occluded_coherent(rays, occluded));
         if !self.others.is_empty() {
-            for (ray, occluded) in rays.iter().zip(occluded) {
-                *occluded = *occluded || self.others.occluded(ray);
-            }
+            self.others.occluded_each(rays, occluded);
         }
     }
 }

@@ -134,8 +134,9 @@ mod tests {
         let [r, g, b, w] = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
         let texture = Texture { name: "t".into(), width: 2, height: 2, pixels: vec![r, g, b, w] };
         for shift in [0.0, 1.0, -3.0] {
-            let at =
-                |u: f32, v: f32| Square::about(Vec2::new(u + shift, v - shift), &texture).colour(&texture, &LINEAR);
+            let at = |u: f32, v: f32| {
+                Square::about(Vec2::new(u + shift, v - shift), &texture).colour(&texture, &LINEAR)
+            };
             assert_eq!(at(0.25, 0.25), Vec3::X);
             assert_eq!(at(0.75, 0.25), Vec3::Y);
             assert_eq!(at(0.25, 0.75), Vec3::Z);

@@ -126,11 +126,5 @@ fn normals(matrix: DMat3) -> DMat3 {
 /// Of unit length; none if it has no direction.
 #[inline(always)]
 fn unit(vector: DVec3) -> Option<Vec3> {
-    let rounded = vector.as_vec3();
-    let square = rounded.length_squared();
-    // Neither beyond f32 nor worn away by its least numbers.
-    if (1e-30..1e30).contains(&square) {
-        return Some(rounded * (1.0 / square.sqrt()));
-    }
     vector.try_normalize().map(|unit| unit.as_vec3())
 }

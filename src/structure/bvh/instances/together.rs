@@ -7,7 +7,7 @@
 use super::super::traverse::RAYS;
 use super::{Instances, Intersector};
 use crate::geometry::hit::TriangleTest;
-use crate::geometry::{FineRay, Hit, Ray};
+use crate::geometry::{Hit, Ray};
 
 /// Into how many places a packet may go before its rays go on by themselves: all of them go into each, where one by one
 /// few would.
@@ -74,14 +74,11 @@ impl<T: TriangleTest> Instances<T> {
         rays: &[Ray],
         mut place: impl FnMut(usize, &[usize], &mut [f32]),
     ) -> Option<bool> {
-        let mut fine = [FineRay::from(&NONE); RAYS];
         let mut fars = [0.0; RAYS];
-        for ((fine, far), ray) in fine.iter_mut().zip(&mut fars).zip(rays) {
-            (*fine, *far) = (FineRay::from(ray), ray.far);
-        }
-        let (fine, fars) = (&fine[..rays.len()], &mut fars[..rays.len()]);
+        fars.iter_mut().zip(rays).for_each(|(far, ray)| *far = ray.far);
+        let fars = &mut fars[..rays.len()];
         let mut places = 0;
-        let go_together = self.top.walk_together(fine, fars, self.error, |at, fars| {
+        let go_together = self.top.walk_together(rays, fars, self.error, |at, fars| {
             places += 1;
             if places > MOST {
                 return false;

@@ -3,13 +3,11 @@
 use super::super::BoxBvh;
 use super::super::wide::WIDTH;
 use super::count::{Count, Uncounted};
-use super::packet::RAYS;
 use super::waiting::{PLACES, Stack};
-use crate::geometry::FineRay;
-use crate::geometry::hit::{Probe, Seek, Slab};
+use crate::geometry::hit::{Probe, Seek, Slab, Span};
 use crate::geometry::lanes::{Kind, Lanes};
+use crate::geometry::{FineRay, Ray};
 use std::mem::MaybeUninit;
-use std::slice;
 
 impl BoxBvh {
     /// Goes through the items in whose boxes a ray may end, nearer ones first. `item` is told an item's place in the
@@ -42,34 +40,38 @@ impl BoxBvh {
         });
     }
 
-    /// Goes with several rays, not more than [`RAYS`], through the items in whose boxes one of them may end, nearer ones
-    /// first; `error` as for one. `item` is told an item's place in the order, and shortens in `fars` how far each ray
-    /// still reaches, below its `near` if it is over; it answers whether to go on. Tells whether the rays go the same
-    /// way: if not, nothing is asked.
+    /// Goes with several rays through the items in whose boxes one of them may end, nearer ones first; `error` as for one.
+    /// `item` is told an item's place in the order, and shortens in `fars` how far each ray still reaches, below its
+    /// `near` if it is over; it answers whether to go on. Tells whether the rays go the same way: if not, nothing is
+    /// asked.
     pub(in crate::structure::bvh) fn walk_together(
         &self,
-        rays: &[FineRay],
+        rays: &[Ray],
         fars: &mut [f32],
         error: f64,
         mut item: impl FnMut(usize, &mut [f32]) -> bool,
     ) -> bool {
-        let mut probes = [const { MaybeUninit::<Probe>::uninit() }; RAYS];
-        for (probe, ray) in probes.iter_mut().zip(rays) {
-            let Some(made) = Probe::new(ray, self.scale, error) else { return false };
-            probe.write(made);
-        }
-        // SAFETY: as many were written as there are rays, or places.
-        let probes = unsafe { slice::from_raw_parts(probes.as_ptr().cast::<Probe>(), rays.len().min(RAYS)) };
-        let Some(span) = Probe::span(probes) else { return false };
+        let Some(span) = Span::about(rays, self.scale, error as f32) else { return false };
         let reach = |fars: &[f32]| {
-            let under_way = probes.iter().zip(rays).zip(fars).filter(|((_, ray), far)| **far >= ray.near);
-            under_way.map(|((probe, _), far)| probe.reach(*far)).reduce(f32::max)
+            let under_way = rays.iter().zip(fars).filter(|(ray, far)| **far >= ray.near);
+            under_way.map(|(_, far)| Span::reach(*far)).reduce(f32::max)
         };
         if let Some(farthest) = reach(fars) {
             let mut item = |place| if item(place, fars) { reach(fars) } else { None };
             on_unit(self, &span, farthest, &mut Uncounted, &mut item);
         }
         true
+    }
+
+    /// Whether it can be told of several rays together that none of them ends in an item's box; `error` as for one.
+    pub fn is_missed_by(&self, rays: &[Ray], error: f64) -> bool {
+        let Some(span) = Span::about(rays, self.scale, error as f32) else { return false };
+        let mut is_missed = true;
+        on_unit(self, &span, span.far, &mut Uncounted, |_| {
+            is_missed = false;
+            None
+        });
+        is_missed
     }
 }
 

@@ -63,6 +63,50 @@ impl Span {
     }
 }
 
+/// How many times closer together rays end than they begin that are rather looked at from their ends.
+const CLOSER: f32 = 4.0;
+/// By how much an end may be beside where it is said to be: as a share of the way there, four times what the box test of
+/// one ray rounds distances outwards, and of the greatest coordinate.
+const END_ROUNDED: [f32; 2] = [4.0 * super::aim::SLACK, 1.0 / (1 << 21) as f32];
+
+impl Span {
+    /// What the same rays span on their way back, if they end closer together than they begin, as those to one light do:
+    /// it is as narrow near the light as they are, and these intervals widen with distance. A box, from a distance of 0
+    /// on, is met by it that is met by one of them.
+    #[inline(always)]
+    pub(crate) fn back(&self, aims: &[Aim; 16]) -> Option<Self> {
+        let end = |aim: &Aim| aim.origin + aim.direction * aim.far;
+        let first = end(&aims[0]);
+        let (mut low, mut high, mut ways, mut most) = (first, first, Vec3A::ZERO, Vec3A::ZERO);
+        for aim in aims {
+            let end = end(aim);
+            (low, high) = (low.min(end), high.max(end));
+            ways = ways.max((aim.direction * aim.far).abs());
+            most = most.max(aim.origin.abs()).max(end.abs());
+        }
+        let begin_apart = (self.first_origin - self.last_origin).abs().max_element();
+        // So that a NaN is none, too.
+        let is_closer = (high - low).max_element() * CLOSER <= begin_apart;
+        let room = ways.max_element() * END_ROUNDED[0] + most.max_element() * END_ROUNDED[1];
+        let (low, high) = (low - room, high + room);
+        if !(is_closer && low.is_finite() && high.is_finite()) {
+            return None;
+        }
+        let rises = self.rises.map(|rises| !rises);
+        let pick = |up: Vec3A, down: Vec3A| Vec3A::select(rises.into(), up, down);
+        let turned = |[least, greatest]: [Vec3A; 2]| [-greatest, -least];
+        Some(Self {
+            first_origin: pick(high, low),
+            last_origin: pick(low, high),
+            first_rate: turned(self.first_rate),
+            last_rate: turned(self.last_rate),
+            near: 0.0,
+            far: self.far,
+            rises,
+        })
+    }
+}
+
 /// By how much distances of rays [`Span::about`] is told of are rounded outwards: four times as far as one ray's are, if
 /// its origin may be anywhere near.
 const SLACK: f32 = 1.0 / (1 << 17) as f32;

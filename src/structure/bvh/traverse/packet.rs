@@ -63,7 +63,9 @@ pub(super) unsafe fn together<'b, N: Lanes, B: Lanes, T: TriangleTest, C: Count,
     }
     // SAFETY: all were written.
     let aims = unsafe { &*(&raw const aims).cast::<[Aim; RAYS]>() };
-    let span = &Span::of(aims)?;
+    let span = Span::of(aims)?;
+    // Which hit is found first is all the same where any will do.
+    let span = &if ANY { span.back(aims).unwrap_or(span) } else { span };
     // SAFETY: the processor is the caller's.
     let mut several = unsafe {
         Several::<N, B, T, ANY> {

@@ -13,10 +13,10 @@ pub(super) const LEAST_PART: f32 = 1.0 / (1u128 << 100) as f32;
 
 /// Between these lengths in the scale's, directions are taken as they are: rays from here and there to one light then
 /// all come to it at the same `t`, and go through a hierarchy together.
-const AS_THEY_ARE: std::ops::Range<f32> = 1.0 / 1024.0..1024.0;
+pub(super) const AS_THEY_ARE: std::ops::Range<f32> = 1.0 / 1024.0..1024.0;
 
 /// For the axis where a ray goes most: those that the watertight test calls x, y and z.
-const AXES: [[u8; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+pub(super) const AXES: [[u8; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
 /// A ray in a scale's lengths, and what tests ask of it. Its direction's greatest part is as it is within
 /// [`AS_THEY_ARE`], or else brought to between 1 and 2.
@@ -34,8 +34,8 @@ pub(crate) struct Aim {
     /// The origin by that test's axes.
     from: [f32; 3],
     /// Lengths of the ray's own direction in each of this one's, and where its `t` begins.
-    stretch: f32,
-    start: f32,
+    pub(super) stretch: f32,
+    pub(super) start: f32,
     /// The axes that test calls x, y and z: z is where the ray goes most.
     pub(super) axes: [u8; 3],
     /// Bit `axis` is set if the ray goes down that axis.
@@ -148,60 +148,6 @@ impl<L: Lanes> Beam<L> {
             }
         }
     }
-
-    /// Some rays of several, from `from` on, one a lane.
-    ///
-    /// # Safety
-    /// The processor has the lanes' vector unit, and there are as many rays from `from` on as lanes.
-    #[inline(always)]
-    pub(crate) unsafe fn several(rays: &Columns, from: usize) -> Self {
-        let three = rays.parts.as_chunks::<3>().0;
-        // SAFETY: the processor is the caller's, and so is what there is to load.
-        unsafe {
-            Self {
-                origin: load(&three[0], from),
-                direction: load(&three[1], from),
-                first_rate: load(&three[2], from),
-                last_rate: load(&three[3], from),
-                shear: load(&three[4], from),
-                from: load(&three[5], from),
-                axes: rays.axes,
-                rises: rays.rises,
-            }
-        }
-    }
-}
-
-/// What beams hold of 16 rays that have octant and axes in common.
-#[derive(Clone, Copy)]
-pub(crate) struct Columns {
-    /// By number of the part, then by ray.
-    parts: [[f32; 16]; 18],
-    axes: [usize; 3],
-    rises: [bool; 3],
-}
-
-impl Columns {
-    #[inline(always)]
-    pub(crate) fn of(aims: &[Aim; 16]) -> Self {
-        let mut columns = [[0.0; 16]; 18];
-        for (ray, aim) in aims.iter().enumerate() {
-            let Aim { origin, direction, first_rate, last_rate, shear, from, .. } = aim;
-            let [origin, direction] = [origin, direction].map(|part| part.to_array());
-            let [first_rate, last_rate] = [first_rate, last_rate].map(|part| part.to_array());
-            let parts = [origin, direction, first_rate, last_rate, *shear, *from];
-            for (column, value) in columns.iter_mut().zip(parts.as_flattened()) {
-                column[ray] = *value;
-            }
-        }
-        Self { parts: columns, axes: axes(&aims[0]), rises: rises(&aims[0]) }
-    }
-}
-
-#[inline(always)]
-unsafe fn load<L: Lanes>([x, y, z]: &[[f32; 16]; 3], from: usize) -> [L; 3] {
-    // SAFETY: the processor and what there is to load are the caller's.
-    unsafe { [L::load(x, from), L::load(y, from), L::load(z, from)] }
 }
 
 /// By axis, which of six rows of planes rays come to first.

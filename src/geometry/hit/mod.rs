@@ -11,6 +11,7 @@
 //! No bound is absolute: lengths are counted in the scene's own ([`Scale`]).
 
 mod aim;
+mod columns;
 mod cone;
 mod fast;
 mod probe;
@@ -26,7 +27,8 @@ pub use scale::Scale;
 pub use sphere::sphere;
 pub use watertight::Watertight;
 
-pub(crate) use aim::{Aim, Beam, Columns};
+pub(crate) use aim::{Aim, Beam};
+pub(crate) use columns::Columns;
 pub(crate) use probe::Probe;
 pub(crate) use slab::slab;
 pub(crate) use span::{Seek, Slab, Span, Spread, Way};

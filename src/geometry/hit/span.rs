@@ -1,7 +1,7 @@
 //! What rays that go much the same way have in common.
 
 use super::Scale;
-use super::aim::{Aim, rises, rows, spread};
+use super::aim::{rows, spread};
 use crate::geometry::Ray;
 use crate::geometry::lanes::Lanes;
 use glam::Vec3A;
@@ -26,43 +26,6 @@ pub(crate) struct Span {
     pub(crate) rises: [bool; 3],
 }
 
-impl Span {
-    /// What these rays span. `None` if they do not go much the same way.
-    #[inline(always)]
-    pub(crate) fn of(aims: &[Aim; 16]) -> Option<Self> {
-        let first = &aims[0];
-        let apart = APART * first.direction.abs().max_element();
-        let like_first = |aim: &Aim| {
-            aim.octant == first.octant
-                && aim.axes == first.axes
-                && (aim.direction - first.direction).abs().max_element() <= apart
-                && aim.last_rate.is_finite()
-        };
-        if !aims.iter().all(like_first) {
-            return None;
-        }
-        let over = |part: fn(&Aim) -> Vec3A| {
-            aims.iter().fold([part(first); 2], |[least, greatest], aim| {
-                [least.min(part(aim)), greatest.max(part(aim))]
-            })
-        };
-        let [least, greatest] = over(|aim| aim.origin);
-        let rises = rises(first);
-        let pick = |up: Vec3A, down: Vec3A| {
-            Vec3A::from_array([0, 1, 2].map(|i| if rises[i] { up[i] } else { down[i] }))
-        };
-        Some(Self {
-            first_origin: pick(greatest, least),
-            last_origin: pick(least, greatest),
-            first_rate: over(|aim| aim.first_rate),
-            last_rate: over(|aim| aim.last_rate),
-            near: aims.iter().fold(f32::INFINITY, |least, aim| least.min(aim.near)),
-            far: aims.iter().fold(0.0, |greatest, aim| aim.far.max(greatest)),
-            rises,
-        })
-    }
-}
-
 /// How many times closer together rays end than they begin that are rather looked at from their ends.
 const CLOSER: f32 = 4.0;
 /// By how much an end may be beside where it is said to be: as a share of the way there, four times what the box test of
@@ -70,24 +33,18 @@ const CLOSER: f32 = 4.0;
 const END_ROUNDED: [f32; 2] = [4.0 * super::aim::SLACK, 1.0 / (1 << 21) as f32];
 
 impl Span {
-    /// What the same rays span on their way back, if they end closer together than they begin, as those to one light do:
-    /// it is as narrow near the light as they are, and these intervals widen with distance. A box, from a distance of 0
-    /// on, is met by it that is met by one of them.
+    /// What the same rays span on their way back, where they end between `low` and `high`, if that is closer together than
+    /// they begin, as for those to one light: it is as narrow near the light as they are, and these intervals widen with
+    /// distance. `way` is how far they go along any axis at most. A box, from a distance of 0 on, is met by it that is met
+    /// by one of them.
     #[inline(always)]
-    pub(crate) fn back(&self, aims: &[Aim; 16]) -> Option<Self> {
-        let end = |aim: &Aim| aim.origin + aim.direction * aim.far;
-        let first = end(&aims[0]);
-        let (mut low, mut high, mut ways, mut most) = (first, first, Vec3A::ZERO, Vec3A::ZERO);
-        for aim in aims {
-            let end = end(aim);
-            (low, high) = (low.min(end), high.max(end));
-            ways = ways.max((aim.direction * aim.far).abs());
-            most = most.max(aim.origin.abs()).max(end.abs());
-        }
-        let begin_apart = (self.first_origin - self.last_origin).abs().max_element();
+    pub(super) fn back(&self, [low, high]: [Vec3A; 2], way: f32) -> Option<Self> {
+        let origins = [self.first_origin, self.last_origin];
+        let begin_apart = (origins[0] - origins[1]).abs().max_element();
         // So that a NaN is none, too.
         let is_closer = (high - low).max_element() * CLOSER <= begin_apart;
-        let room = ways.max_element() * END_ROUNDED[0] + most.max_element() * END_ROUNDED[1];
+        let coordinates = [origins[0], origins[1], low, high].map(|at| at.abs().max_element());
+        let room = way * END_ROUNDED[0] + coordinates.into_iter().fold(0.0, f32::max) * END_ROUNDED[1];
         let (low, high) = (low - room, high + room);
         if !(is_closer && low.is_finite() && high.is_finite()) {
             return None;

@@ -37,7 +37,7 @@ impl Corners<f32> for One<'_> {
 impl<T: TriangleTest> Intersector for TriangleList<T> {
     fn closest(&self, ray: &Ray) -> Option<Hit> {
         let aim = Aim::new(ray, self.scale)?;
-        let mut nearest = Nearest::none(&aim);
+        let mut nearest = Nearest::none(aim.far);
         // SAFETY: one lane needs no unit.
         let beam = unsafe { Beam::<f32>::one(&aim) };
         for (item, corners) in self.triangles.iter().enumerate() {
@@ -51,7 +51,7 @@ impl<T: TriangleTest> Intersector for TriangleList<T> {
                 nearest.offer(found.t, found.u, found.v, item as u32);
             }
         }
-        nearest.hit(&aim)
+        nearest.hit(|t| aim.own_t(t))
     }
 
     fn occluded(&self, ray: &Ray) -> bool {

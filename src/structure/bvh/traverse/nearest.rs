@@ -1,7 +1,7 @@
 //! The nearest hit so far.
 
 use crate::geometry::Hit;
-use crate::geometry::hit::{Aim, Found};
+use crate::geometry::hit::Found;
 use crate::geometry::lanes::Lanes;
 
 /// The nearest hit so far, in an aim's lengths; before there is one, the end of the ray.
@@ -16,8 +16,8 @@ pub(super) struct Nearest {
 
 impl Nearest {
     #[inline(always)]
-    pub(super) fn none(aim: &Aim) -> Self {
-        Self { t: aim.far, u: 0.0, v: 0.0, item: u32::MAX }
+    pub(super) fn none(far: f32) -> Self {
+        Self { t: far, u: 0.0, v: 0.0, item: u32::MAX }
     }
 
     #[inline(always)]
@@ -26,8 +26,8 @@ impl Nearest {
     }
 
     #[inline(always)]
-    pub(super) fn hit(&self, aim: &Aim) -> Option<Hit> {
-        self.is_hit().then(|| Hit { t: aim.own_t(self.t), u: self.u, v: self.v, item: self.item })
+    pub(super) fn hit(&self, own_t: impl Fn(f32) -> f32) -> Option<Hit> {
+        self.is_hit().then(|| Hit { t: own_t(self.t), u: self.u, v: self.v, item: self.item })
     }
 
     /// Takes what one lane found if that is nearer, or as near and of a lower number.
@@ -67,7 +67,7 @@ impl Nearest {
     #[inline(always)]
     pub(super) unsafe fn take_each<L: Lanes>(
         rays: &mut [Self],
-        aims: &[Aim],
+        near: &[f32],
         found: &Found<L>,
         lanes: u64,
         item: u32,
@@ -84,7 +84,7 @@ impl Nearest {
         while left != 0 {
             let lane = left.trailing_zeros() as usize & 15;
             left &= left - 1;
-            if t[lane] >= aims[lane].near {
+            if t[lane] >= near[lane] {
                 is_taken |= t[lane] <= rays[lane].t;
                 rays[lane].offer(t[lane], u[lane], v[lane], item);
             }

@@ -44,7 +44,7 @@ pub(super) struct Together {
 
 /// Takes the rays through, not more than [`RAYS`]: each to its nearest hit, or with `ANY` until it has one. If they have
 /// little in common after all, those that are still under way go on by themselves, from what they have met by then.
-/// `None` if they do not go the same way ([`Span::of`]), or one goes nowhere.
+/// `None` if they do not go the same way ([`Columns::of`]), or one goes nowhere.
 ///
 /// # Safety
 /// The processor has the vector units of the lanes for nodes `N` and for blocks `B`.
@@ -55,26 +55,16 @@ pub(super) unsafe fn together<'b, N: Lanes, B: Lanes, T: TriangleTest, C: Count,
     rays: &[Ray],
     guess: &mut Guess<'b>,
 ) -> Option<Together> {
-    // As for one ray: here, where the unit's own instructions make them.
-    let mut aims = [const { MaybeUninit::<Aim>::uninit() }; RAYS];
-    for (at, aim) in aims.iter_mut().enumerate() {
-        // Where there are fewer, the first once more.
-        aim.write(Aim::new(rays.get(at).unwrap_or(&rays[0]), bvh.scale)?);
-    }
-    // SAFETY: all were written.
-    let aims = unsafe { &*(&raw const aims).cast::<[Aim; RAYS]>() };
-    let span = Span::of(aims)?;
-    // Which hit is found first is all the same where any will do.
-    let span = &if ANY { span.back(aims).unwrap_or(span) } else { span };
+    // SAFETY: the processor is the caller's. Which hit is found first is all the same where any will do.
+    let (columns, span) = &unsafe { Columns::of::<N, ANY>(rays, bvh.scale) }?;
     // SAFETY: the processor is the caller's.
     let mut several = unsafe {
         Several::<N, B, T, ANY> {
-            aims,
             span,
             wide: span.spread(),
             narrow: span.spread(),
-            columns: Columns::of(aims),
-            nearest: aims.each_ref().map(Nearest::none),
+            columns,
+            nearest: columns.far.map(Nearest::none),
             farthest: span.far,
             under_way: (1 << RAYS) - 1,
             vectors: 0,
@@ -96,23 +86,27 @@ pub(super) unsafe fn together<'b, N: Lanes, B: Lanes, T: TriangleTest, C: Count,
     }
     guess.0 = several.hit;
     let mut hits = [None; RAYS];
-    for (ray, (hit, aim)) in hits.iter_mut().zip(aims).enumerate() {
-        let mut nearest = several.nearest[ray];
-        if !stayed && several.under_way >> ray & 1 == 1 {
-            // SAFETY: the processor is the caller's.
-            nearest = unsafe { go_on::<N, B, T, C, ANY>(bvh, count, aim, nearest, guess) };
+    for (number, (hit, nearest)) in hits.iter_mut().zip(several.nearest).enumerate() {
+        *hit = nearest.hit(|t| columns.own_t(number, t));
+    }
+    if !stayed {
+        for (number, (hit, ray)) in hits.iter_mut().zip(rays).enumerate() {
+            if several.under_way >> number & 1 == 1 {
+                let (aim, nearest) = (&Aim::new(ray, bvh.scale)?, several.nearest[number]);
+                // SAFETY: the processor is the caller's.
+                let nearest = unsafe { go_on::<N, B, T, C, ANY>(bvh, count, aim, nearest, guess) };
+                *hit = nearest.hit(|t| aim.own_t(t));
+            }
         }
-        *hit = nearest.hit(aim);
     }
     Some(Together { hits, stayed })
 }
 
 struct Several<'a, 'b, N, B, T, const ANY: bool> {
-    aims: &'a [Aim; RAYS],
     span: &'a Span,
     wide: Spread<N>,
     narrow: Spread<B>,
-    columns: Columns,
+    columns: &'a Columns,
     nearest: [Nearest; RAYS],
     farthest: f32,
     /// Bit `i` is set while ray `i` looks for hits: with `ANY`, until it has one.
@@ -175,12 +169,12 @@ impl<'b, N: Lanes, B: Lanes, T: TriangleTest, const ANY: bool> Walker<'b, N>
                 }
                 // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 16.
                 unsafe {
-                    let beam = Beam::several(&self.columns, from);
+                    let beam = Beam::several(self.columns, from);
                     let Some(found) = meet::<N, T>(&beam, &Alone { block, lane }) else { continue };
                     let lanes = found.lanes & under_way & found.t.at_least(N::splat(0.0));
                     if lanes != 0 {
-                        let (nearest, aims) = (&mut self.nearest[from..], &self.aims[from..]);
-                        is_taken |= Nearest::take_each(nearest, aims, &found, lanes, item);
+                        let (nearest, near) = (&mut self.nearest[from..], &self.columns.near[from..]);
+                        is_taken |= Nearest::take_each(nearest, near, &found, lanes, item);
                     }
                 }
             }

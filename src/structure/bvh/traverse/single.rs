@@ -28,7 +28,7 @@ pub(super) unsafe fn through<'b, N: Lanes, B: Lanes, T: TriangleTest, C: Count, 
     // Here, where the unit's own instructions make it and its numbers need not go through memory.
     let aim = &Aim::new(ray, bvh.scale)?;
     // SAFETY: the processor is the caller's.
-    unsafe { go_on::<N, B, T, C, ANY>(bvh, count, aim, Nearest::none(aim), guess) }.hit(aim)
+    unsafe { go_on::<N, B, T, C, ANY>(bvh, count, aim, Nearest::none(aim.far), guess) }.hit(|t| aim.own_t(t))
 }
 
 /// Takes a ray through that may have a hit already: what is nearest then.

@@ -13,8 +13,8 @@ use super::{Counts, Tracer};
 #[derive(Default)]
 pub(super) struct Lighting {
     surfaces: Vec<Lit>,
+    /// As many as there ever were surfaces; to a light go the first of them.
     rays: Vec<Ray>,
-    /// The way of each ray.
     ways: Vec<Way>,
     hidden: Vec<bool>,
 }
@@ -35,15 +35,11 @@ struct Lit {
     first: usize,
 }
 
-/// From a surface to a light.
+/// From which surface a ray goes to which light, by number.
+#[derive(Clone, Copy, Default)]
 struct Way {
-    /// By number among the surfaces.
     surface: usize,
     light: usize,
-    /// Of unit length.
-    direction: Vec3,
-    /// Between it and the surface's normal.
-    cosine: f32,
 }
 
 impl Lighting {
@@ -84,31 +80,35 @@ impl Lighting {
         let lights = tracer.world.lights();
         let asked = lights.len().min(tracer.look.most_lights as usize);
         let share = if asked < lights.len() { lights.len() as f32 / asked as f32 } else { 1.0 };
+        if self.rays.len() < self.surfaces.len() {
+            self.rays.resize(self.surfaces.len(), Ray::new(Vec3::ZERO, Vec3::ZERO));
+            self.ways.resize(self.surfaces.len(), Way::default());
+        }
         for next in 0..asked {
-            self.rays.clear();
-            self.ways.clear();
+            let mut count = 0;
             for (number, surface) in self.surfaces.iter().enumerate() {
                 // Both are below the number of lights.
                 let light = surface.first + next;
                 let light = if light < lights.len() { light } else { light - lights.len() };
                 let way = lights[light].position - surface.origin;
-                let Some(direction) = way.try_normalize() else { continue };
-                let cosine = direction.dot(surface.smooth);
-                // Also where the light is behind the shape itself.
-                if cosine <= 0.0 || direction.dot(surface.flat) <= 0.0 {
-                    continue;
-                }
-                self.rays.push(Ray { far: 1.0, ..Ray::new(surface.origin, way) });
-                self.ways.push(Way { surface: number, light, direction, cosine });
+                self.rays[count] = Ray { far: 1.0, ..Ray::new(surface.origin, way) };
+                self.ways[count] = Way { surface: number, light };
+                // Not where the light is behind the shape itself. Counted, for nobody could foresee a branch.
+                count += usize::from((way.dot(surface.smooth) > 0.0) & (way.dot(surface.flat) > 0.0));
             }
-            counts.shadow += self.rays.len() as u64;
+            let (rays, ways) = (&self.rays[..count], &self.ways[..count]);
+            counts.shadow += count as u64;
             self.hidden.clear();
-            self.hidden.resize(self.rays.len(), false);
-            tracer.intersector.occluded_coherent(&self.rays, &mut self.hidden);
-            for (way, _) in self.ways.iter().zip(&self.hidden).filter(|(_, is_hidden)| !**is_hidden) {
+            self.hidden.resize(count, false);
+            tracer.intersector.occluded_coherent(rays, &mut self.hidden);
+            for ((ray, way), is_hidden) in rays.iter().zip(ways).zip(&self.hidden) {
+                let Some(direction) = (!is_hidden).then(|| ray.direction.try_normalize()).flatten() else {
+                    continue;
+                };
                 let surface = &self.surfaces[way.surface];
-                let shine = power(way.direction.dot(surface.mirrored).max(0.0), surface.exponent);
-                let scattered = surface.diffuse * way.cosine + surface.highlight * shine;
+                let shine = power(direction.dot(surface.mirrored).max(0.0), surface.exponent);
+                let cosine = direction.dot(surface.smooth);
+                let scattered = surface.diffuse * cosine + surface.highlight * shine;
                 colours[surface.of] += lights[way.light].colour * scattered * share;
             }
         }

@@ -64,16 +64,16 @@ impl Tracer<'_> {
         let first = if asked < lights.len() { some_number(surface.point) } else { 0 };
         for light in (0..asked).map(|next| &lights[(first + next) % lights.len()]) {
             let way = light.position - origin;
-            let Some(direction) = way.try_normalize() else { continue };
-            let cosine = direction.dot(bounce.smooth);
-            // Also where the light is behind the shape itself.
-            if cosine <= 0.0 || direction.dot(bounce.flat) <= 0.0 {
+            // Where the light is not behind the shape itself.
+            if !(way.dot(bounce.smooth) > 0.0 && way.dot(bounce.flat) > 0.0) {
                 continue;
             }
             counts.shadow += 1;
             if self.intersector.occluded(&Ray { far: 1.0, ..Ray::new(origin, way) }) {
                 continue;
             }
+            let Some(direction) = way.try_normalize() else { continue };
+            let cosine = direction.dot(bounce.smooth);
             let shine = power(direction.dot(mirrored).max(0.0), surface.material.exponent);
             colour += light.colour * (diffuse * cosine + highlight * shine) * share;
         }

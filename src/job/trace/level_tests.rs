@@ -158,8 +158,7 @@ fn surfaces_of_flocks_lie_on_them_and_face_outward() {
         let Some(hit) = hierarchy.closest(&ray) else { continue };
         let (primitive, Some(transform)) = world.primitive(hit.item) else { continue };
         let Shape::Sphere(sphere) = primitive.shape else { continue };
-        let spot = spots::Spots::default().find(&world, &[Some(hit)])[0];
-        let surface = world.surface(&ray, &hit, &spot);
+        let surface = world.on_primitive(&ray, &hit);
         let (back, radius) = (transform.matrix3.as_dmat3().inverse(), f64::from(sphere.radius));
         let own =
             |at: Vec3| back * (at - Vec3::from(transform.translation)).as_dvec3() - sphere.centre.as_dvec3();

@@ -14,6 +14,7 @@ mod bounce;
 mod costs;
 mod counts;
 mod eye;
+mod facet;
 mod film;
 mod flocks;
 mod frame;

@@ -20,7 +20,9 @@ impl Tracer<'_> {
     fn colour(&self, ray: &Ray, hit: Option<Hit>, depth: u32, counts: &mut Counts) -> Vec3 {
         let Some(hit) = hit else { return self.look.background };
         counts.deepest = counts.deepest.max(depth);
-        let surface = self.world.surface(ray, &hit, &Spots::default().find(self.world, &[Some(hit)])[0]);
+        let mut spots = Spots::default();
+        spots.find(self.world, &[Some(hit)]);
+        let surface = spots.surface(self.world, 0, ray, &hit);
         let bounce = Bounce::new(ray.direction, &surface);
         let (through, mirrored) = (bounce.through(&surface), bounce.mirrored_share(&surface));
         let kept = if surface.material.fresnel { Vec3::ONE - mirrored } else { Vec3::ONE };

@@ -7,24 +7,26 @@ use std::sync::LazyLock;
 
 use glam::{Vec2, Vec3};
 
-use crate::geometry::Hit;
+use crate::geometry::{Hit, Ray};
 use crate::scene::Texture;
 
 use super::World;
-use super::world::Place;
+use super::facet::Facets;
+use super::surface::Surface;
 
 /// Where a hit is, and what its surface is tinted by.
 #[derive(Clone, Copy)]
-pub(super) struct Spot {
-    /// Of a triangle; else any.
-    pub(super) place: Place,
+struct Spot {
+    /// That of a triangle; else any.
+    facet: u32,
     /// The colour of the texture; white where there is none.
-    pub(super) tint: Vec3,
+    tint: Vec3,
 }
 
 /// The spots of a wave's hits, and room to find them.
 #[derive(Default)]
 pub(super) struct Spots {
+    facets: Facets,
     all: Vec<Spot>,
     looks: Vec<Look>,
 }
@@ -40,28 +42,23 @@ struct Look {
 impl Spots {
     /// Finds the spot of each hit, and any for what is none.
     #[inline(always)]
-    pub(super) fn find(&mut self, world: &World, hits: &[Option<Hit>]) -> &[Spot] {
-        let triangle = |hit: &Option<Hit>| hit.filter(|hit| (hit.item as usize) < world.triangles());
+    pub(super) fn find(&mut self, world: &World, hits: &[Option<Hit>]) {
+        self.facets.clear();
         self.all.clear();
-        let mut touched = 0;
-        self.all.extend(hits.iter().map(|hit| {
-            let Some(hit) = triangle(hit) else { return Spot { place: Place::default(), tint: Vec3::ONE } };
-            touched ^= world.touch(hit.item);
-            Spot { place: world.place_of(hit.item), tint: Vec3::ONE }
-        }));
-        std::hint::black_box(touched);
         self.looks.clear();
-        for (of, (spot, hit)) in self.all.iter().zip(hits).enumerate() {
-            let Some(hit) = triangle(hit) else { continue };
-            let (mesh, triangle) = (world.mesh(spot.place), spot.place.triangle as usize);
-            let shading = &mesh.shading;
-            let Some(number) = world.material(shading.materials.of(triangle)).texture else { continue };
-            let Some([a, b, c]) = shading.coordinates.of(triangle, mesh.triangles[triangle]) else {
+        for (of, hit) in hits.iter().enumerate() {
+            let triangle = hit.filter(|hit| (hit.item as usize) < world.triangles());
+            let Some(hit) = triangle else {
+                self.all.push(Spot { facet: 0, tint: Vec3::ONE });
                 continue;
             };
-            let at = a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v;
-            let texture = &world.scene.textures[number as usize];
-            self.looks.push(Look { of, texture: number, square: Square::about(at, texture) });
+            let facet = self.facets.find(world, hit.item);
+            self.all.push(Spot { facet, tint: Vec3::ONE });
+            if let Some((number, [a, b, c])) = self.facets.at(facet).texture {
+                let at = a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v;
+                let texture = &world.scene.textures[number as usize];
+                self.looks.push(Look { of, texture: number, square: Square::about(at, texture) });
+            }
         }
         // A load of each row and nothing else, so that many looks' are on their way at once.
         let touched = self.looks.iter().fold(0, |touched, look| {
@@ -73,7 +70,16 @@ impl Spots {
         for look in &self.looks {
             self.all[look.of].tint = look.square.colour(&world.scene.textures[look.texture as usize], linear);
         }
-        &self.all
+    }
+
+    /// What is where a ray met something, by number among the hits that were found last.
+    #[inline(always)]
+    pub(super) fn surface<'w>(&self, world: &'w World, number: usize, ray: &Ray, hit: &Hit) -> Surface<'w> {
+        if hit.item as usize >= world.triangles() {
+            return world.on_primitive(ray, hit);
+        }
+        let Spot { facet, tint } = self.all[number];
+        world.on_triangle(ray, hit, self.facets.at(facet), tint)
     }
 }
 

@@ -2,20 +2,20 @@
 
 use std::sync::LazyLock;
 
-use glam::{Affine3A, DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec3, Vec3};
 
 use crate::geometry::{FineRay, Hit, Ray};
-use crate::scene::{Material, Primitive, Shape};
+use crate::scene::{Material, Shape};
 use crate::structure::bvh::placed_box;
 
 use super::World;
+use super::facet::Facet;
 use super::flocks::way_in;
-use super::spots::Spot;
 
 /// How far from a surface the rays that leave it start, as a share of the greatest coordinate of the shape: 32 units
 /// in the last place of it. What is computed of a shape is wrong by a few of those, wherever it lies and however large
 /// it is, so a bound of its own in metres is needed nowhere.
-const APART: f32 = 1.0 / (1 << 19) as f32;
+pub(super) const APART: f32 = 1.0 / (1 << 19) as f32;
 
 /// A point of a surface. Normals are of unit length and on the side the triangle is anticlockwise from, or outward.
 pub(super) struct Surface<'a> {
@@ -40,50 +40,31 @@ impl World {
         number.map_or(&UNKNOWN, |number| &self.scene.materials[number as usize])
     }
 
-    /// What is where a ray met an item, whose spot it is.
+    /// What is where a ray met a triangle, which a texture tints.
     #[inline(always)]
-    pub(super) fn surface(&self, ray: &Ray, hit: &Hit, spot: &Spot) -> Surface<'_> {
-        if (hit.item as usize) < self.triangles() {
-            return self.on_triangle(ray, hit, spot);
-        }
-        let (primitive, transform) = self.primitive(hit.item);
-        self.on_primitive(ray, hit.t, primitive, transform)
-    }
-
-    #[inline(always)]
-    fn on_triangle(&self, ray: &Ray, hit: &Hit, spot: &Spot) -> Surface<'_> {
-        let placed = self.placed(spot.place);
-        let corners = placed.corners;
-        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+    pub(super) fn on_triangle(&self, ray: &Ray, hit: &Hit, facet: &Facet, tint: Vec3) -> Surface<'_> {
+        let [a, b, c] = facet.corners;
         let (u, v) = (f64::from(hit.u), f64::from(hit.v));
         // From the corners and not along the ray, whose error grows with its length.
         let point = (a * (1.0 - u - v) + b * u + c * v).as_vec3();
-        let facing = || -ray.direction.normalize_or_zero();
-        let flat = unit((b - a).cross(c - a)).unwrap_or_else(facing);
-        let vertices = placed.mesh.triangles[placed.triangle];
-        let shading = &placed.mesh.shading;
+        let flat = facet.flat.unwrap_or_else(|| -ray.direction.normalize_or_zero());
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
-        let smooth = shading.normals.of(placed.triangle, vertices).and_then(|normals| {
+        let smooth = facet.normals.as_ref().and_then(|(normals, to_world)| {
             let normal = normals.iter().zip(weights).fold(Vec3::ZERO, |sum, (n, w)| sum + *n * w);
             // An unused slot of a reader may be 0, and opposite normals cancel.
-            unit((*placed.normals * normal).as_dvec3())
+            unit((*to_world * normal).as_dvec3())
         });
-        let material = self.material(shading.materials.of(placed.triangle));
-        let greatest = corners.iter().fold(0.0, |most: f32, corner| most.max(corner.abs().max_element()));
+        let material = self.material(facet.material);
         let (diffuse, ambient) =
-            (material.diffuse * spot.tint, material.ambient.unwrap_or(material.diffuse) * spot.tint);
-        let (smooth, apart) = (smooth.unwrap_or(flat), APART * greatest);
-        Surface { point, flat, smooth, material, diffuse, ambient, apart }
+            (material.diffuse * tint, material.ambient.unwrap_or(material.diffuse) * tint);
+        let smooth = smooth.unwrap_or(flat);
+        Surface { point, flat, smooth, material, diffuse, ambient, apart: facet.apart }
     }
 
-    /// On a sphere or cone, in the world or in a space that `transform` takes to it.
-    fn on_primitive(
-        &self,
-        ray: &Ray,
-        t: f32,
-        primitive: &Primitive,
-        transform: Option<&Affine3A>,
-    ) -> Surface<'_> {
+    /// What is where a ray met a sphere or cone.
+    pub(super) fn on_primitive(&self, ray: &Ray, hit: &Hit) -> Surface<'_> {
+        let (primitive, transform) = self.primitive(hit.item);
+        let t = hit.t;
         let way = transform.and_then(way_in);
         let own = way.map_or_else(|| FineRay::from(ray), |(place, _)| place.take_in(ray));
         let near = own.origin + own.direction * f64::from(t);
@@ -125,6 +106,6 @@ fn normals(matrix: DMat3) -> DMat3 {
 
 /// Of unit length; none if it has no direction.
 #[inline(always)]
-fn unit(vector: DVec3) -> Option<Vec3> {
+pub(super) fn unit(vector: DVec3) -> Option<Vec3> {
     vector.try_normalize().map(|unit| unit.as_vec3())
 }

@@ -371,8 +371,9 @@ fn normals_follow_their_nodes() {
         let out = (a + b + c) / 3.0 * 2.0;
         let ray = crate::geometry::Ray::new(out, -out);
         let hit = List(world.items()).closest(&ray);
-        let spot = Spots::default().find(&world, &[hit])[0];
-        let surface = world.surface(&ray, &hit.expect("it is aimed at"), &spot);
+        let mut spots = Spots::default();
+        spots.find(&world, &[hit]);
+        let surface = spots.surface(&world, 0, &ray, &hit.expect("it is aimed at"));
         let across = (b - a).cross(c - a).normalize();
         assert!(surface.flat.distance(across) < 1e-5);
         // A mirrored mesh is wound the other way, and its normals are outward still.

@@ -100,14 +100,14 @@ impl Waves {
         tracer.intersector.closest_coherent(&wave.rays, &mut wave.hits);
         let mut mirrored = self.idle.pop().unwrap_or_default();
         let mut through = self.idle.pop().unwrap_or_default();
-        let spots = self.spots.find(tracer.world, &wave.hits);
-        for (number, ((ray, hit), spot)) in wave.rays.iter().zip(&wave.hits).zip(spots).enumerate() {
+        self.spots.find(tracer.world, &wave.hits);
+        for (number, (ray, hit)) in wave.rays.iter().zip(&wave.hits).enumerate() {
             let Some(hit) = hit else {
                 wave.colours.push(tracer.look.background);
                 continue;
             };
             counts.deepest = counts.deepest.max(depth);
-            let surface = tracer.world.surface(ray, hit, spot);
+            let surface = self.spots.surface(tracer.world, number, ray, hit);
             let bounce = Bounce::new(ray.direction, &surface);
             let mirrors = bounce.mirrored_share(&surface);
             let way = bounce.mirrored();

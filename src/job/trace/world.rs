@@ -74,15 +74,6 @@ pub(super) struct FlockRun {
     pub(super) transform: Affine3A,
 }
 
-/// Where a triangle is listed.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Place {
-    /// Which node's mesh, by number among those that place one.
-    run: u32,
-    /// By number in the mesh.
-    pub(super) triangle: u32,
-}
-
 /// A triangle as the mesh it belongs to knows it.
 pub(super) struct Placed<'a> {
     pub(super) mesh: &'a Mesh,
@@ -223,7 +214,7 @@ impl World {
 
     /// The corners of a triangle, by item number, in metres; none of what is no triangle.
     pub fn corners(&self, item: u32) -> Option<[Vec3; 3]> {
-        ((item as usize) < self.triangles).then(|| self.placed(self.place_of(item)).corners)
+        ((item as usize) < self.triangles).then(|| self.placed(item).corners)
     }
 
     /// Where each mesh stands.
@@ -236,41 +227,26 @@ impl World {
         &self.flocks
     }
 
-    /// Where a triangle is listed, by item number.
+    /// Which run a triangle is of, by item number.
     #[inline(always)]
-    pub(super) fn place_of(&self, item: u32) -> Place {
+    fn run_of(&self, item: u32) -> usize {
         let mark = (item >> self.apart) as usize;
         let [from, to] = [self.marks[mark], self.marks[mark + 1]].map(|run| run as usize);
-        let run = from + self.firsts[from + 1..=to].partition_point(|first| *first <= item);
-        Place { run: run as u32, triangle: item - self.firsts[run] }
+        from + self.firsts[from + 1..=to].partition_point(|first| *first <= item)
     }
 
-    /// Loads what is listed of a triangle, which takes part in nothing: it is on its way by the time it is needed.
+    /// A triangle in the world, by item number.
     #[inline(always)]
-    pub(super) fn touch(&self, item: u32) -> u32 {
-        let Some(items) = self.items.get() else { return 0 };
-        let [first, _, last] = &items.triangles[item as usize];
-        first.x.to_bits() ^ last.z.to_bits()
-    }
-
-    /// The mesh of a triangle.
-    #[inline(always)]
-    pub(super) fn mesh(&self, place: Place) -> &Mesh {
-        &self.scene.meshes[self.runs[place.run as usize].mesh as usize]
-    }
-
-    /// A triangle in the world.
-    #[inline(always)]
-    pub(super) fn placed(&self, place: Place) -> Placed<'_> {
-        let run = &self.runs[place.run as usize];
-        let mesh = self.mesh(place);
-        let triangle = place.triangle as usize;
+    pub(super) fn placed(&self, item: u32) -> Placed<'_> {
+        let number = self.run_of(item);
+        let run = &self.runs[number];
+        let (mesh, triangle) = (&self.scene.meshes[run.mesh as usize], (item - run.first) as usize);
         let put = |vertex: u32| run.transform.transform_point3(mesh.positions[vertex as usize]);
         let corners = match self.items.get() {
-            Some(items) => items.triangles[run.first as usize + triangle],
+            Some(items) => items.triangles[item as usize],
             None => mesh.triangles[triangle].map(put),
         };
-        Placed { mesh, triangle, corners, normals: &self.normals[place.run as usize] }
+        Placed { mesh, triangle, corners, normals: &self.normals[number] }
     }
 
     /// A sphere or cone, by item number; and from its space to the world's, where that is not the same.

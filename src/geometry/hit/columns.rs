@@ -146,11 +146,11 @@ impl Columns {
             }
         }
         let rates = [greatest.recip(), least.recip()];
-        let pick = |up: Vec3A, down: Vec3A| Vec3A::select(rises.into(), up, down);
+        let up = rises.into();
         let far = bounds.greatest[7].min(f32::MAX);
         let span = Span {
-            first_origin: pick(high, low),
-            last_origin: pick(low, high),
+            first_origin: Vec3A::select(up, high, low),
+            last_origin: Vec3A::select(up, low, high),
             first_rate: rates.map(|rate| rate * (1.0 - SLACK)),
             last_rate: rates.map(|rate| rate * (1.0 + SLACK)),
             near: bounds.least[6] + 0.0,

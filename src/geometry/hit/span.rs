@@ -43,20 +43,19 @@ impl Span {
         let begin_apart = (origins[0] - origins[1]).abs().max_element();
         // So that a NaN is none, too.
         let is_closer = (high - low).max_element() * CLOSER <= begin_apart;
-        let coordinates = [origins[0], origins[1], low, high].map(|at| at.abs().max_element());
-        let room = way * END_ROUNDED[0] + coordinates.into_iter().fold(0.0, f32::max) * END_ROUNDED[1];
+        let greatest = origins[0].abs().max(origins[1].abs()).max(low.abs().max(high.abs())).max_element();
+        let room = way * END_ROUNDED[0] + greatest * END_ROUNDED[1];
         let (low, high) = (low - room, high + room);
         if !(is_closer && low.is_finite() && high.is_finite()) {
             return None;
         }
         let rises = self.rises.map(|rises| !rises);
-        let pick = |up: Vec3A, down: Vec3A| Vec3A::select(rises.into(), up, down);
-        let turned = |[least, greatest]: [Vec3A; 2]| [-greatest, -least];
+        let up = rises.into();
         Some(Self {
-            first_origin: pick(high, low),
-            last_origin: pick(low, high),
-            first_rate: turned(self.first_rate),
-            last_rate: turned(self.last_rate),
+            first_origin: Vec3A::select(up, high, low),
+            last_origin: Vec3A::select(up, low, high),
+            first_rate: [-self.first_rate[1], -self.first_rate[0]],
+            last_rate: [-self.last_rate[1], -self.last_rate[0]],
             near: 0.0,
             far: self.far,
             rises,

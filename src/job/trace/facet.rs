@@ -1,6 +1,6 @@
 //! What is the same all over a triangle, made once for all who meet it one soon after the other.
 
-use glam::{DVec3, Mat3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::World;
 use super::surface::{APART, unit};
@@ -13,8 +13,8 @@ pub(super) struct Facet {
     pub(super) flat: Option<Vec3>,
     /// How far from it rays that leave it start, in metres.
     pub(super) apart: f32,
-    /// Normals at its corners, and what takes them to the world.
-    pub(super) normals: Option<([Vec3; 3], Mat3)>,
+    /// Normals at its corners, in the world; the longest about 1 long.
+    pub(super) normals: Option<[Vec3; 3]>,
     /// By number among the scene's.
     pub(super) material: Option<u32>,
     /// Which texture, and where in it the corners are.
@@ -68,15 +68,24 @@ impl Facet {
         let greatest =
             placed.corners.iter().fold(0.0, |most: f32, corner| most.max(corner.abs().max_element()));
         let [a, b, c] = placed.corners.map(|corner| corner.as_dvec3());
+        let normals = shading.normals.of(triangle, vertices);
         let material = shading.materials.of(triangle);
         let texture = world.material(material).texture;
         Self {
             corners: [a, b, c],
             flat: unit((b - a).cross(c - a)),
             apart: APART * greatest,
-            normals: shading.normals.of(triangle, vertices).map(|normals| (normals, *placed.normals)),
+            normals: normals.map(|normals| near_one(normals.map(|normal| *placed.normals * normal))),
             material,
             texture: texture.zip(shading.coordinates.of(triangle, vertices)),
         }
     }
+}
+
+/// Times a power of two, so that nothing is rounded, by which the longest is about 1 long; if all are 0 they stay so.
+#[inline(always)]
+fn near_one(normals: [Vec3; 3]) -> [Vec3; 3] {
+    let greatest = normals.iter().fold(0.0, |most: f32, normal| most.max(normal.abs().max_element()));
+    let exponent = (greatest.to_bits() >> 23).clamp(1, 253);
+    normals.map(|normal| normal * f32::from_bits((254 - exponent) << 23))
 }

@@ -48,12 +48,10 @@ impl World {
         // From the corners and not along the ray, whose error grows with its length.
         let point = (a * (1.0 - u - v) + b * u + c * v).as_vec3();
         let flat = facet.flat.unwrap_or_else(|| -ray.direction.normalize_or_zero());
-        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
-        let smooth = facet.normals.as_ref().and_then(|(normals, to_world)| {
-            let normal = normals.iter().zip(weights).fold(Vec3::ZERO, |sum, (n, w)| sum + *n * w);
-            // An unused slot of a reader may be 0, and opposite normals cancel.
-            unit((*to_world * normal).as_dvec3())
-        });
+        // An unused slot of a reader may be 0, and opposite normals cancel.
+        let smooth = facet
+            .normals
+            .and_then(|[a, b, c]| (a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v).try_normalize());
         let material = self.material(facet.material);
         let (diffuse, ambient) =
             (material.diffuse * tint, material.ambient.unwrap_or(material.diffuse) * tint);

@@ -52,8 +52,9 @@ impl Tiles {
 /// Pixels across and down whose rays come one after the other: as many as go in a packet, and as near one another as
 /// can be.
 const SQUARE: usize = 4;
-/// The most pixels whose rays are asked about together: those of the paper's tile.
-const TOGETHER: usize = 128;
+/// The most pixels whose rays are asked about together: the more, the more of them meet the same, until they no longer
+/// fit into the nearest caches.
+const TOGETHER: usize = 512;
 
 /// The picture of one camera, for a tile scheme to share out.
 pub struct Frame<'a, M: Machine> {

@@ -310,6 +310,53 @@ mod tests {
         assert!(!along(1.0 + 3e-2) && !along(-3e-2));
     }
 
+    /// Also of boxes that each ray passes as closely as it is rounded.
+    #[test]
+    fn rays_that_are_told_to_miss_all_boxes_miss_them_one_by_one() {
+        let mut random = SplitMix64::new(4);
+        let (mut missed, mut met) = (0, 0);
+        for (scale, shift) in
+            [(1.0, Vec3::ZERO), (1e-30, Vec3::ZERO), (1e30, Vec3::ONE), (1.0, Vec3::new(1e5, -3e4, 7.0))]
+        {
+            let boxes = boxes(&mut random, 4, scale, shift);
+            let (bvh, _) = over(&boxes);
+            for number in 0..4000 {
+                let mut point =
+                    || Vec3::from_array([(); 3].map(|()| random.between(-1.0, 1.0) as f32)) * scale;
+                let Aabb { min, max } = boxes[number % 4];
+                let side = |axis: usize| if number >> (2 + axis) & 1 == 1 { max[axis] } else { min[axis] };
+                let beside = [0.0, 1e-6, 3.0][number / 96 % 3];
+                let aim = Vec3::new(side(0), side(1), side(2)) + point() * beside;
+                let from = aim - point() * 20.0;
+                let apart = [0.0, 1e-6, 0.3][number % 3];
+                let rays: Vec<Ray> = (0..16)
+                    .map(|_| Ray { far: 1.5, ..Ray::new(from, aim + point() * apart - from) })
+                    .collect();
+                let asks = |ray: &Ray| {
+                    let mut asks = false;
+                    bvh.walk(&FineRay::from(ray), 0.0, |_, far| {
+                        asks = true;
+                        far
+                    });
+                    asks
+                };
+                let is_missed = bvh.is_missed_by(&rays, 0.0);
+                assert!(!(is_missed && rays.iter().any(asks)), "{number} at {scale}: {rays:?}, {boxes:?}");
+                missed += usize::from(is_missed);
+                met += usize::from(!is_missed);
+            }
+            let ray = Ray::new(shift * scale, Vec3::new(1.0, 1.0, 1.0) * scale);
+            for bad in [
+                Ray { near: -1.0, ..ray },
+                Ray::new(Vec3::NAN, ray.direction),
+                Ray::new(ray.origin, Vec3::ZERO),
+            ] {
+                assert!(!bvh.is_missed_by(&[ray, bad], 0.0), "it is told one by one");
+            }
+        }
+        assert!(missed > 1000 && met > 5000, "{missed} packets miss, {met} may not");
+    }
+
     #[test]
     fn nearer_ones_come_first_and_the_end_is_the_end() {
         let slices: Vec<Aabb> = (0..3000)

@@ -209,7 +209,43 @@ fn packets_tell_what_the_list_tells() {
         }
         rays.truncate(16 * 79 + 11);
         assert!(hold_both(&triangles, &halved(&triangles, 2), &rays) > 50, "{apart}");
+        // Longer than are taken as they are.
+        for ray in &mut rays {
+            (ray.direction, ray.near, ray.far) = (ray.direction * 3e4, ray.near / 3e4, ray.far / 3e4);
+        }
+        assert!(hold_both(&triangles, &halved(&triangles, 2), &rays) > 50, "{apart}");
     }
+}
+
+/// Each ray passes a corner as closely as it is rounded, on the outside of its packet, also where all but come to the
+/// light.
+#[test]
+fn packets_to_a_light_meet_what_their_rays_graze() {
+    let random = &mut Random(7);
+    let (mut hit, mut missed) = (0, 0);
+    for (scale, shift) in [(1.0, Vec3::ZERO), (1e-12, Vec3::ZERO), (1.0, Vec3::new(300.0, -20.0, 7.0))] {
+        for packet in 0..150 {
+            let (light, middle) = (random.point() * 2.0, random.point());
+            let apart = [0.2, 0.01][packet % 2];
+            let place = |point: Vec3| point * scale + shift;
+            let origins: Vec<Vec3> = (0..16).map(|_| place(middle + random.point() * apart)).collect();
+            let rays: Vec<Ray> = origins
+                .iter()
+                .map(|origin| Ray { far: 1.0, ..Ray::new(*origin, place(light) - *origin) })
+                .collect();
+            let triangles: Vec<[Vec3; 3]> = rays
+                .iter()
+                .map(|ray| {
+                    let corner = ray.at([0.1, 0.9, 0.999][random.below(3)]);
+                    let out = (ray.origin - place(middle)).normalize() * (0.01 * scale);
+                    [corner, corner + out * 2.0, corner + out + random.point() * (0.01 * scale)]
+                })
+                .collect();
+            let some = hold_both(&triangles, &halved(&triangles, 1), &rays);
+            (hit, missed) = (hit + some, missed + 16 - some);
+        }
+    }
+    assert!(hit > 500 && missed > 500, "{hit} rays hit, {missed} do not");
 }
 
 #[test]

@@ -158,9 +158,11 @@ impl Columns {
             rises,
         };
         let way = least.abs().max(greatest.abs()).max_element() * far;
-        // SAFETY: the processor is the caller's.
-        let ends = if let Some(ends) = ends { Some(unsafe { across(ends) }) } else { None };
-        let back = ends.and_then(|ends| span.back(ends, way));
+        let back = match ends {
+            // SAFETY: the processor is the caller's. No closure, which would not have its instructions.
+            Some(ends) => span.back(unsafe { across(ends) }, way),
+            None => None,
+        };
         Some((columns, back.unwrap_or(span)))
     }
 

@@ -3,9 +3,10 @@
 //!
 //! A node's eight boxes are tested against all rays at once: distances of planes are taken at the ends of the intervals
 //! that the rays' origins and rates span. Each step keeps the order of its arguments when it is rounded, so what one ray
-//! meets on its own the packet meets. So are the boxes of a block's triangles; the triangles left over are tested
-//! against as many rays at a time as there are lanes, by the same operations as one ray's, so every hit is the same.
-//! Rays that turn out to have little in common go on one by one.
+//! meets on its own the packet meets. Rays to one light are held against boxes from the light, where they are narrowest,
+//! with room for what that rounds. So are the boxes of a block's triangles; the triangles left over are tested against as
+//! many rays at a time as there are lanes, by the same operations as one ray's, so every hit is the same. Rays that turn
+//! out to have little in common go on one by one.
 
 use super::super::WideBvh;
 use super::super::wide::{Alone, Block, TRIANGLES, Together as Four, WIDTH};

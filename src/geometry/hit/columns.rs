@@ -256,6 +256,7 @@ impl Bounds {
     /// None if there is a NaN among them.
     #[inline(always)]
     unsafe fn of<L: Lanes>(rows: &[Row; RAYS]) -> Option<Self> {
+        const { assert!(L::LEN <= 8, "a row holds no more") };
         let mut bounds = Self { least: rows[0], greatest: rows[0] };
         for from in (0..8).step_by(L::LEN) {
             // SAFETY: the processor is the caller's; `from` steps by the lanes' number below 8.
@@ -296,5 +297,77 @@ impl Bounds {
     fn are_tame(&self, axis: usize, scale: Scale) -> bool {
         let ends = [self.least, self.greatest].map(|row| row[3 + axis].abs() * scale.factor());
         self.least[6] >= 0.0 && AS_THEY_ARE.contains(&ends[0]) && AS_THEY_ARE.contains(&ends[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    /// Column by column, also of rays that are lengthened or moved first, and of too few.
+    fn hold<L: Lanes>(rays: &[Ray], scale: Scale) -> bool {
+        // SAFETY: one lane needs no unit.
+        let Some((columns, _)) = (unsafe { Columns::of::<L, true>(rays, scale) }) else { return false };
+        for ray in 0..RAYS {
+            let aim = Aim::new(rays.get(ray).unwrap_or(&rays[0]), scale).expect("it is in a packet");
+            // SAFETY: as above.
+            let (own, expected) = unsafe { (Beam::<f32>::several(&columns, ray), Beam::<f32>::one(&aim)) };
+            let parts = |beam: Beam<f32>| {
+                [beam.origin, beam.direction, beam.first_rate, beam.last_rate, beam.shear, beam.from]
+                    .map(|part| part.map(f32::to_bits))
+            };
+            assert_eq!(parts(own), parts(expected), "{ray} of {rays:?}");
+            assert_eq!((own.axes, own.rises), (expected.axes, expected.rises));
+            assert_eq!(
+                [columns.near[ray], columns.far[ray]].map(f32::to_bits),
+                [aim.near, aim.far].map(f32::to_bits)
+            );
+            assert_eq!(columns.own_t(ray, 0.75), aim.own_t(0.75));
+        }
+        true
+    }
+
+    #[test]
+    fn columns_hold_what_each_ray_is_alone() {
+        let mut held = 0;
+        for number in 0..600_u32 {
+            let part =
+                |seed: u32| (number.wrapping_mul(2_654_435_761).wrapping_add(seed * 40_503) >> 7) as f32;
+            let point =
+                |seed: u32| Vec3::new(part(seed), part(seed + 1), part(seed + 2)) / (1 << 25) as f32 - 0.5;
+            let length = [1.0, 300.0, 1e-6, 1e9, 1e-20][number as usize % 5];
+            let (way, near) = (point(3) * 2.0, [0.0, -0.0, 0.25, -0.5][number as usize / 5 % 4]);
+            let far = [1.0, f32::INFINITY, 1e20][number as usize / 20 % 3];
+            let rays: Vec<Ray> = (0..[16, 9][number as usize % 2])
+                .map(|ray| {
+                    let beside = (point(10 + 6 * ray) + point(13 + 6 * ray)) * 0.02;
+                    Ray { origin: point(0) + beside, direction: (way + beside) * length, near, far }
+                })
+                .collect();
+            let scale = Scale::of([Vec3::splat([1.0, 3e4, 1e-8][number as usize % 3])]);
+            held += usize::from(hold::<f32>(&rays, scale));
+        }
+        assert!(held > 300, "{held} of 600 are packets");
+    }
+
+    #[test]
+    fn what_meets_nothing_or_goes_its_own_way_is_in_no_packet() {
+        let ray = Ray::new(Vec3::ZERO, Vec3::new(1.0, 0.9, 0.8));
+        let scale = Scale::of([Vec3::ONE]);
+        assert!(hold::<f32>(&[ray; 3], scale));
+        for bad in [
+            Ray::new(Vec3::NAN, ray.direction),
+            Ray::new(Vec3::INFINITY, ray.direction),
+            Ray::new(Vec3::ZERO, Vec3::new(1.0, 0.9, 0.0)),
+            Ray::new(Vec3::ZERO, Vec3::new(1.0, 0.9, -0.1)),
+            Ray::new(Vec3::ZERO, Vec3::new(0.9, 1.0, 0.8)),
+            Ray::new(Vec3::ZERO, Vec3::new(1.0, f32::NAN, 0.8)),
+            Ray::new(Vec3::ZERO, Vec3::splat(f32::INFINITY)),
+            Ray { near: 2.0, far: 1.0, ..ray },
+            Ray { far: f32::NAN, ..ray },
+        ] {
+            assert!(!hold::<f32>(&[ray, bad], scale), "{bad:?}");
+        }
     }
 }

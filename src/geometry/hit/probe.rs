@@ -14,7 +14,7 @@ const SLACK: f32 = 1.0 / (1 << 19) as f32;
 /// By how much farther than a hit boxes may begin and still be looked into: of hits equally near all are to be seen.
 const BEYOND: f64 = 1.0 / (1 << 18) as f64;
 /// What is at least taken for the rounding of an origin, as a share of the greatest coordinate there is.
-const LEAST: f64 = 1.0 / (1u64 << 48) as f64;
+pub(super) const LEAST: f64 = 1.0 / (1u64 << 48) as f64;
 
 /// A ray in a scale's lengths, with room for error.
 #[derive(Clone, Copy, Debug)]

@@ -2,6 +2,7 @@
 
 use super::Scale;
 use super::aim::{rows, spread};
+use super::probe::LEAST;
 use crate::geometry::Ray;
 use crate::geometry::lanes::Lanes;
 use glam::Vec3A;
@@ -41,11 +42,11 @@ impl Span {
     pub(super) fn back(&self, [low, high]: [Vec3A; 2], way: f32) -> Option<Self> {
         let origins = [self.first_origin, self.last_origin];
         let begin_apart = (origins[0] - origins[1]).abs().max_element();
-        // So that a NaN is none, too.
-        let is_closer = (high - low).max_element() * CLOSER <= begin_apart;
         let greatest = origins[0].abs().max(origins[1].abs()).max(low.abs().max(high.abs())).max_element();
         let room = way * END_ROUNDED[0] + greatest * END_ROUNDED[1];
         let (low, high) = (low - room, high + room);
+        // So that a NaN is none, too.
+        let is_closer = (high - low).max_element() * CLOSER <= begin_apart;
         if !(is_closer && low.is_finite() && high.is_finite()) {
             return None;
         }
@@ -63,20 +64,20 @@ impl Span {
     }
 }
 
-/// By how much distances of rays [`Span::about`] is told of are rounded outwards: four times as far as one ray's are, if
-/// its origin may be anywhere near.
-const SLACK: f32 = 1.0 / (1 << 17) as f32;
+/// By how much distances of rays that [`Span::about`] is told of are rounded outwards: four times as far as a probe's.
+const ABOUT_SLACK: f32 = 1.0 / (1 << 17) as f32;
 /// By how much farther than it reaches a ray is taken to reach.
-const BEYOND: f32 = 1.0 + 1.0 / (1 << 16) as f32;
+const BEYOND: f32 = 1.0 / (1 << 16) as f32;
 /// What is at least taken for the rounding of an origin, as a share of the greatest coordinate.
 const ROUNDED: f32 = 1.0 / (1 << 22) as f32;
-/// Rates beyond this are of parts so small that their own rounding tells.
+/// Rates beyond this, or below one over it, are of parts so small, or so great, that their own rounding tells.
 const MOST_RATE: f32 = (1u128 << 100) as f32;
 
 impl Span {
     /// What rays span each of which may be anywhere within `error` of where it is said to be, along each axis: a share of
     /// the sum of its origin's and the scale's greatest coordinates. In the rays' own `t`, as [`Span::reach`] is.
-    /// `None` if they do not go much the same way, one begins before its origin, or one meets nothing whatever there is.
+    /// `None` if they do not go much the same way, one begins before its origin, is not finite or parallel to a plane of an
+    /// axis, or has a part beyond what can be told in the scale's lengths.
     ///
     /// A box is met by it that is met by the [`Probe`](super::Probe) of any of them.
     #[inline]
@@ -101,11 +102,13 @@ impl Span {
         let [low, high] = over(|ray| ray.origin.into()).map(|origin| origin * lengths);
         let greatest = low.abs().max(high.abs()).max_element();
         // No coordinate of the scale is above 2.
-        let room = greatest * ROUNDED + (greatest + 2.0) * error + f32::MIN_POSITIVE;
+        let room = greatest * ROUNDED + (greatest + 2.0) * error.max(LEAST as f32) + f32::MIN_POSITIVE;
         let (low, high) = (low - room, high + room);
         let [least, greatest] = over(|ray| ray.direction.into()).map(|direction| direction * lengths);
         let rates = [greatest.recip(), least.recip()];
-        let are_usable = |rate: Vec3A| rate.abs().max_element() < MOST_RATE;
+        let are_usable = |rate: Vec3A| {
+            rate.abs().max_element() < MOST_RATE && rate.abs().min_element() > MOST_RATE.recip()
+        };
         if !(low.is_finite() && high.is_finite() && rates.into_iter().all(are_usable)) {
             return None;
         }
@@ -114,9 +117,9 @@ impl Span {
         Some(Self {
             first_origin: pick(high, low),
             last_origin: pick(low, high),
-            first_rate: rates.map(|rate| rate * (1.0 - SLACK)),
-            last_rate: rates.map(|rate| rate * (1.0 + SLACK)),
-            near: rays.iter().fold(f32::INFINITY, |least, ray| least.min(ray.near)) * (1.0 - SLACK),
+            first_rate: rates.map(|rate| rate * (1.0 - ABOUT_SLACK)),
+            last_rate: rates.map(|rate| rate * (1.0 + ABOUT_SLACK)),
+            near: rays.iter().fold(f32::INFINITY, |least, ray| least.min(ray.near)) * (1.0 - ABOUT_SLACK),
             far: Self::reach(rays.iter().fold(0.0, |farthest, ray| ray.far.max(farthest))),
             rises,
         })
@@ -126,7 +129,7 @@ impl Span {
     #[inline]
     pub(crate) fn reach(t: f32) -> f32 {
         // Not infinite, which is where boxes begin that are met nowhere.
-        (t * BEYOND).min(f32::MAX)
+        (t * (1.0 + BEYOND)).min(f32::MAX)
     }
 }
 

@@ -3,7 +3,7 @@
 //!
 //! An intersector around the real one reads the clock before each question about rays and after it, so that this is a
 //! pass of its own: it is slower than a frame that nobody times. How often the clock was read is told, and nothing is
-//! subtracted: rays are asked about by up to 128 at once, so that is not often.
+//! subtracted: rays are asked about by up to 512 at once, so that is not often.
 
 use std::sync::atomic::Ordering;
 

@@ -172,8 +172,8 @@ fn what_a_frames_time_goes_into_changes_no_picture() {
         for (time, expected) in TIMES.iter().zip(&expected) {
             let (picture, split) = animator.split(*time, &machine, &mut film).unwrap();
             assert!(picture == *expected, "{method} at {time}");
-            // Twice a question, which is of up to 128 rays.
-            let asked = u64::from(width * height).div_ceil(128);
+            // Twice a question, which is of up to 512 rays.
+            let asked = u64::from(width * height).div_ceil(512);
             assert!(split.readings % 2 == 0 && split.readings > 2 * asked / 16, "{split:?}");
             assert!(
                 split.rebuild_ticks > 0 && split.visibility_ticks > 0 && split.shading_ticks > 0,

@@ -82,7 +82,7 @@ impl Facet {
     }
 }
 
-/// Times a power of two, so that nothing is rounded, by which the longest is about 1 long; if all are 0 they stay so.
+/// Times a power of two by which the longest is about 1 long, as far as normal numbers go; if all are 0 they stay so.
 #[inline(always)]
 fn near_one(normals: [Vec3; 3]) -> [Vec3; 3] {
     let greatest = normals.iter().fold(0.0, |most: f32, normal| most.max(normal.abs().max_element()));

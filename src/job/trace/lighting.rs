@@ -106,7 +106,7 @@ impl Lighting {
                     continue;
                 };
                 let surface = &self.surfaces[way.surface];
-                let shine = power(direction.dot(surface.mirrored).max(0.0), surface.exponent);
+                let shine = power(direction.dot(surface.mirrored).clamp(0.0, 1.0), surface.exponent);
                 let cosine = direction.dot(surface.smooth);
                 let scattered = surface.diffuse * cosine + surface.highlight * shine;
                 colours[surface.of] += lights[way.light].colour * scattered * share;

@@ -76,7 +76,7 @@ impl Tracer<'_> {
             }
             let Some(direction) = way.try_normalize() else { continue };
             let cosine = direction.dot(bounce.smooth);
-            let shine = power(direction.dot(mirrored).max(0.0), surface.material.exponent);
+            let shine = power(direction.dot(mirrored).clamp(0.0, 1.0), surface.material.exponent);
             colour += light.colour * (diffuse * cosine + highlight * shine) * share;
         }
         colour

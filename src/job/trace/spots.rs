@@ -1,7 +1,7 @@
 //! Where the hits of a wave are, and the colours of their textures.
 //!
-//! Each step is taken for all hits before the next is: hits lie apart in memory, and while what one needs is on its way
-//! the processor asks for what others do.
+//! The texels of all hits are asked for before the first is looked at: they lie apart in memory, and while what one hit
+//! needs is on its way the processor asks for what others do.
 
 use std::sync::LazyLock;
 

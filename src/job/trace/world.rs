@@ -285,9 +285,12 @@ mod tests {
                 scene.add_node(None, "node", Affine3A::from_translation(Vec3::Z), Some(mesh));
             }
             let world = World::new(scene);
+            // Before they are listed: what is listed is told of then.
+            let told: Vec<_> = (0..counts.iter().sum()).map(|item| world.corners(item)).collect();
             let listed = &world.items().triangles;
             assert_eq!(listed.len(), counts.iter().sum::<u32>() as usize);
             for (item, corners) in (0..).zip(listed) {
+                assert_eq!(told[item as usize], Some(*corners), "{item} of {counts:?}");
                 assert_eq!(world.corners(item), Some(*corners), "{item} of {counts:?}");
             }
             assert_eq!(world.corners(listed.len() as u32), None);

@@ -3,9 +3,9 @@
 //!
 //! A node's eight boxes are tested against all rays at once: distances of planes are taken at the ends of the intervals
 //! that the rays' origins and rates span. Each step keeps the order of its arguments when it is rounded, so what one ray
-//! meets on its own the packet meets. Rays to one light are held against boxes from the light, where they are narrowest,
-//! with room for what that rounds. So are the boxes of a block's triangles; the triangles left over are tested against as
-//! many rays at a time as there are lanes, by the same operations as one ray's, so every hit is the same. Rays that turn
+//! meets on its own the packet meets. So are the boxes of a block's triangles; the triangles left over are tested against as
+//! many rays at a time as there are lanes, by the same operations as one ray's, so every hit is the same. Rays to one
+//! light are held against boxes from the light, where they are narrowest, with room for what that rounds. Rays that turn
 //! out to have little in common go on one by one.
 
 use super::super::WideBvh;
@@ -56,7 +56,7 @@ pub(super) unsafe fn together<'b, N: Lanes, B: Lanes, T: TriangleTest, C: Count,
     rays: &[Ray],
     guess: &mut Guess<'b>,
 ) -> Option<Together> {
-    // SAFETY: the processor is the caller's. Which hit is found first is all the same where any will do.
+    // SAFETY: the processor is the caller's.
     let (columns, span) = &unsafe { Columns::of::<N, ANY>(rays, bvh.scale) }?;
     // SAFETY: the processor is the caller's.
     let mut several = unsafe {
@@ -93,7 +93,8 @@ pub(super) unsafe fn together<'b, N: Lanes, B: Lanes, T: TriangleTest, C: Count,
     if !stayed {
         for (number, (hit, ray)) in hits.iter_mut().zip(rays).enumerate() {
             if several.under_way >> number & 1 == 1 {
-                let (aim, nearest) = (&Aim::new(ray, bvh.scale)?, several.nearest[number]);
+                let (aim, nearest) = (Aim::new(ray, bvh.scale), several.nearest[number]);
+                let aim = &aim.expect("it was made ready before");
                 // SAFETY: the processor is the caller's.
                 let nearest = unsafe { go_on::<N, B, T, C, ANY>(bvh, count, aim, nearest, guess) };
                 *hit = nearest.hit(|t| aim.own_t(t));

@@ -62,6 +62,9 @@ impl Columns {
     }
 
     /// The same of rays that take so many lengths for each of theirs, and nothing else.
+    ///
+    /// # Safety
+    /// The processor has the lanes' vector unit.
     #[inline(always)]
     unsafe fn of_rows<L: Lanes, const ANY: bool>(
         rows: &[Row; RAYS],
@@ -199,6 +202,8 @@ impl<L: Lanes> Beam<L> {
     }
 }
 
+/// # Safety
+/// The processor has the lanes' vector unit, and there are as many numbers from `from` on as lanes.
 #[inline(always)]
 unsafe fn load<L: Lanes>([x, y, z]: &[[f32; RAYS]; 3], from: usize) -> [L; 3] {
     // SAFETY: the processor and what there is to load are the caller's.
@@ -219,6 +224,8 @@ fn greatest_axis(row: &Row) -> usize {
     if sizes[2] > sizes[z] { 2 } else { z }
 }
 
+/// # Safety
+/// The processor has the lanes' vector unit.
 #[inline(always)]
 unsafe fn times<L: Lanes>([x, y, z]: [L; 3], by: L) -> [L; 3] {
     // SAFETY: the processor is the caller's.
@@ -226,6 +233,9 @@ unsafe fn times<L: Lanes>([x, y, z]: [L; 3], by: L) -> [L; 3] {
 }
 
 /// The least and the greatest over all lanes.
+///
+/// # Safety
+/// The processor has the lanes' vector unit.
 #[inline(always)]
 unsafe fn across<L: Lanes>(ends: [[L; 3]; 2]) -> [Vec3A; 2] {
     let mut columns = [[[0.0; 16]; 3]; 2];
@@ -254,6 +264,9 @@ struct Bounds {
 
 impl Bounds {
     /// None if there is a NaN among them.
+    ///
+    /// # Safety
+    /// The processor has the lanes' vector unit.
     #[inline(always)]
     unsafe fn of<L: Lanes>(rows: &[Row; RAYS]) -> Option<Self> {
         const { assert!(L::LEN <= 8, "a row holds no more") };

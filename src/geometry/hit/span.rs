@@ -1,7 +1,7 @@
 //! What rays that go much the same way have in common.
 
 use super::Scale;
-use super::aim::{rows, spread};
+use super::aim::{SLACK, rows, spread};
 use super::probe::LEAST;
 use crate::geometry::Ray;
 use crate::geometry::lanes::Lanes;
@@ -31,7 +31,16 @@ pub(crate) struct Span {
 const CLOSER: f32 = 4.0;
 /// By how much an end may be beside where it is said to be: as a share of the way there, four times what the box test of
 /// one ray rounds distances outwards, and of the greatest coordinate.
-const END_ROUNDED: [f32; 2] = [4.0 * super::aim::SLACK, 1.0 / (1 << 21) as f32];
+const END_ROUNDED: [f32; 2] = [4.0 * SLACK, 1.0 / (1 << 21) as f32];
+
+/// By how much distances of rays that [`Span::about`] is told of are rounded outwards: four times as far as a probe's.
+const ABOUT_SLACK: f32 = 1.0 / (1 << 17) as f32;
+/// By how much farther than it reaches a ray is taken to reach.
+const BEYOND: f32 = 1.0 / (1 << 16) as f32;
+/// What is at least taken for the rounding of an origin, as a share of the greatest coordinate.
+const ROUNDED: f32 = 1.0 / (1 << 22) as f32;
+/// Rates beyond this, or below one over it, are of parts so small, or so great, that their own rounding tells.
+const MOST_RATE: f32 = (1u128 << 100) as f32;
 
 impl Span {
     /// What the same rays span on their way back, where they end between `low` and `high`, if that is closer together than
@@ -62,18 +71,7 @@ impl Span {
             rises,
         })
     }
-}
 
-/// By how much distances of rays that [`Span::about`] is told of are rounded outwards: four times as far as a probe's.
-const ABOUT_SLACK: f32 = 1.0 / (1 << 17) as f32;
-/// By how much farther than it reaches a ray is taken to reach.
-const BEYOND: f32 = 1.0 / (1 << 16) as f32;
-/// What is at least taken for the rounding of an origin, as a share of the greatest coordinate.
-const ROUNDED: f32 = 1.0 / (1 << 22) as f32;
-/// Rates beyond this, or below one over it, are of parts so small, or so great, that their own rounding tells.
-const MOST_RATE: f32 = (1u128 << 100) as f32;
-
-impl Span {
     /// What rays span each of which may be anywhere within `error` of where it is said to be, along each axis: a share of
     /// the sum of its origin's and the scale's greatest coordinates. In the rays' own `t`, as [`Span::reach`] is.
     /// `None` if they do not go much the same way, one begins before its origin, is not finite or parallel to a plane of an
